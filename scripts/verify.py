@@ -1,0 +1,154 @@
+"""Checks and tests of the whole project, and their one-line count.
+
+Standard library only.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import threading
+import xml.etree.ElementTree as ElementTree
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from environment import (
+    OUT,
+    ROOT,
+    VENV,
+    VENV_BPY42,
+    Failed,
+    ensure_venv,
+    exclusive,
+    heading,
+    require_rust,
+    run,
+    set_up,
+    stop,
+    venv_program,
+)
+
+CARGO_RESULT = re.compile(r"^test result: \w+\. (\d+) passed; (\d+) failed; (\d+) ignored")
+PYTHON_SOURCES = ("addon", "scripts", "tests")
+RUST_TIMEOUT = 1500.0
+PYTHON_TIMEOUT = 1800.0
+
+
+@dataclass
+class Count:
+    """How many tests went which way, and what went wrong besides."""
+
+    passed: int = 0
+    failed: int = 0
+    skipped: int = 0
+    faults: list[str] = field(default_factory=list)
+
+    def closing_line(self) -> str:
+        """The count as one plain line; a fault without a failed test counts as one."""
+        failed = max(self.failed, len(self.faults))
+        skipped = f", {self.skipped} skipped" if self.skipped else ""
+        return f"{self.passed} passed, {failed} failed{skipped}"
+
+
+def check() -> None:
+    """Formatters, linters and the documentation build; all are run, then any complaint is an error."""
+    require_rust()
+    with exclusive():
+        ensure_venv(VENV, "requirements.txt")
+    ruff = venv_program(VENV, "ruff")
+    strict = {"RUSTDOCFLAGS": "-D warnings"}
+    lint = ["cargo", "clippy", "--workspace", "--all-targets", "--quiet", "--", "-D", "warnings"]
+    document = ["cargo", "doc", "--workspace", "--no-deps", "--document-private-items", "--quiet"]
+    tasks: list[tuple[str, Callable[[], None]]] = [
+        ("Rust format", lambda: run(["cargo", "fmt", "--all", "--check"])),
+        ("Rust lints", lambda: run(lint)),
+        ("Rust documentation", lambda: run(document, **strict)),
+        ("Python format", lambda: run([ruff, "format", "--check", *PYTHON_SOURCES])),
+        ("Python lints", lambda: run([ruff, "check", *PYTHON_SOURCES])),
+    ]
+    faults = []
+    for title, task in tasks:
+        try:
+            with heading(title):
+                task()
+        except Failed as failed:
+            faults.append(f"{title}: {failed}")
+    if faults:
+        raise Failed("check failed:\n  " + "\n  ".join(faults))
+    print(f"check: all {len(tasks)} in order")
+
+
+def test(arguments: list[str]) -> bool:
+    """Run the Rust tests, then pytest with `arguments`; print the closing line; True if all is well."""
+    set_up(bpy42=True)
+    count = Count()
+    with heading("Rust tests"):
+        run_cargo_test(count)
+    with heading("Python tests"):
+        run_pytest(count, arguments)
+    for fault in count.faults:
+        print(f"fault: {fault}")
+    print(count.closing_line(), flush=True)
+    return not (count.failed or count.faults)
+
+
+def run_cargo_test(count: Count) -> None:
+    """Run the workspace's tests, show their output and add their numbers."""
+    command = ["cargo", "test", "--workspace", "--no-fail-fast"]
+    process = subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, text=True, start_new_session=os.name == "posix"
+    )
+    watchdog = threading.Timer(RUST_TIMEOUT, stop, [process])
+    watchdog.start()
+    failed_before = count.failed
+    for line in process.stdout:
+        print(line, end="", flush=True)
+        found = CARGO_RESULT.match(line)
+        if found:
+            count.passed += int(found[1])
+            count.failed += int(found[2])
+            count.skipped += int(found[3])
+    watchdog.cancel()
+    if process.wait() != 0 and count.failed == failed_before:
+        count.faults.append(f"cargo test ended with exit code {process.returncode}")
+
+
+def run_pytest(count: Count, arguments: list[str]) -> None:
+    """Run the Python tests and add the numbers of their XML report."""
+    report = OUT / "test" / "pytest.xml"
+    report.parent.mkdir(parents=True, exist_ok=True)
+    report.unlink(missing_ok=True)
+    python = venv_program(VENV, "python")
+    command = [python, "-m", "pytest", f"--junitxml={report}", *(arguments or ["tests"])]
+    try:
+        run(
+            command,
+            timeout=PYTHON_TIMEOUT,
+            BOUCLE_BPY42_PYTHON=os.environ.get(
+                "BOUCLE_BPY42_PYTHON", str(venv_program(VENV_BPY42, "python"))
+            ),
+        )
+    except Failed as failed:
+        failure = str(failed)
+    else:
+        failure = ""
+    failed_before = count.failed
+    if report.exists():
+        add_report(count, ElementTree.parse(report).getroot())
+    elif not failure:
+        failure = "pytest left no report"
+    if failure and count.failed == failed_before:
+        count.faults.append(failure)
+
+
+def add_report(count: Count, root: ElementTree.Element) -> None:
+    """Add the numbers of a JUnit report; an error in a fixture is a failure."""
+    for suite in root.iter("testsuite"):
+        numbers = {
+            key: int(suite.get(key, "0")) for key in ("tests", "failures", "errors", "skipped")
+        }
+        bad = numbers["failures"] + numbers["errors"]
+        count.failed += bad
+        count.skipped += numbers["skipped"]
+        count.passed += max(0, numbers["tests"] - bad - numbers["skipped"])

@@ -1,0 +1,133 @@
+"""Boucle's physics: cloth as springs, moved frame by frame. SI units, Z up, world space.
+
+Every array argument is any C-contiguous object with the buffer protocol (array.array, numpy array, memoryview); numpy is
+not needed. Work runs with the interpreter released. The same input gives the same bits for any number of threads.
+"""
+
+from collections.abc import Buffer, Callable, Mapping, Sequence
+from typing import final
+
+__version__: str
+
+class BoucleError(Exception):
+    """Anything that this module refuses or reports. The message is one sentence."""
+
+class SceneError(BoucleError, ValueError):
+    """The input is wrong: names the key or object, the value and what would be accepted."""
+
+class DivergedError(BoucleError, ArithmeticError):
+    """A position left the finite numbers: "diverged at frame F, vertex V of cloth NAME". Earlier frames are kept."""
+
+    frame: int
+    vertex: int
+
+class CacheError(BoucleError, OSError):
+    """A result cannot be written or read (disk full, no permission). Earlier frames are kept."""
+
+class InternalError(BoucleError, RuntimeError):
+    """A fault of our own: a Rust panic, caught. The simulation must be thrown away."""
+
+@final
+class Simulation:
+    """Cloths in motion, at the end of `frame`."""
+
+    def __new__(
+        cls,
+        scene: str,
+        meshes: Sequence[tuple[Buffer, Buffer, Buffer]],
+        threads: int = 0,
+    ) -> Simulation:
+        """Build a simulation at the scene's first frame, at rest.
+
+        Args:
+            scene: The scene file's keys as a JSON object, but `grid` and `mesh` of each cloth stand in `meshes`.
+            meshes: For each cloth, in the scene's order: rest positions (m), float32 or float64 (n, 3), world space;
+                the first corner of each face, int32 (f,) or (f + 1,); the vertex of each corner, int32 (c,).
+            threads: 0 takes every core.
+
+        Raises:
+            SceneError: A key, a value or a mesh is not accepted.
+        """
+
+    @property
+    def frame(self) -> int: ...
+    @property
+    def cloth_names(self) -> list[str]: ...
+    @property
+    def safe_time_step(self) -> float:
+        """Largest stable step (s) of these springs and this integrator, damping included; 0 if there is none."""
+
+    @property
+    def substeps(self) -> int:
+        """Steps that the next frame takes."""
+
+    def vertex_count(self, cloth: int) -> int: ...
+    def spring_count(self, cloth: int) -> int: ...
+    def set_positions(self, cloth: int, positions: Buffer) -> None:
+        """Put the vertices at positions (m), float32 or float64 (n, 3), at rest; the rest lengths stay."""
+
+    def set_pin_targets(self, cloth: int, targets: Buffer) -> None:
+        """Where pins go: positions (m), float32 or float64 (n, 3), for *all* vertices of the cloth, of which only the
+        pinned are read; reached in a straight line at the end of the next frame."""
+
+    def release_pins(self, cloth: int, vertices: Sequence[int] | None = None) -> None:
+        """Let pinned vertices (all if None) go, keeping their velocity."""
+
+    def advance(self) -> dict[str, float | int | str | None]:
+        """Move on by one frame and return its certificate: a row of `frames` in report.json, without `seconds`.
+
+        Raises:
+            DivergedError: The state is that of the last good frame.
+        """
+
+    def certificate(self) -> dict[str, float | int | str | None]:
+        """The certificate of the present state."""
+
+    def read_positions(self, cloth: int, out: Buffer) -> None:
+        """Fill out, float32 or float64 (n, 3), with positions (m), world space."""
+
+    def read_velocities(self, cloth: int, out: Buffer) -> None:
+        """Fill out, float32 or float64 (n, 3), with velocities (m/s)."""
+
+    def read_strain(self, cloth: int, out: Buffer) -> None:
+        """Fill out, float32 (n,), with the largest strain of the edges at each vertex."""
+
+    def read_springs(self, cloth: int) -> tuple[bytes, bytes, bytes, bytes, bytes]:
+        """The spring list: ends int32 (s, 2); kind uint8 (s,) 0 stretch 1 shear 2 bend; rest length float64 (s,) (m);
+        stiffness float64 (s,) (N/m), as the limiter has it now; damping float64 (s,) (N·s/m)."""
+
+    def checkpoint(self) -> bytes:
+        """The whole state, versioned and checksummed."""
+
+    def restore(self, checkpoint: bytes) -> None:
+        """Take up the state of a checkpoint of the same scene; what follows is bit-equal to never having stopped.
+
+        Raises:
+            SceneError: The checkpoint is damaged or of another scene.
+        """
+
+def bake(
+    scene: str,
+    out: str,
+    *,
+    frames: tuple[int, int] | None = None,
+    threads: int = 0,
+    overrides: Sequence[str] = (),
+    resume: bool = False,
+    progress: Callable[[Mapping[str, float | int]], None] | None = None,
+) -> Mapping[str, object]:
+    """Bake a scene file into a folder: a PC2 and an OBJ per cloth, report.json and a checkpoint.
+
+    Args:
+        scene: Path of the TOML file.
+        out: Folder, made if missing.
+        frames: First and last frame kept; the scene's own range if None.
+        threads: 0 takes every core.
+        overrides: "key.path=value" each, TOML values.
+        resume: Go on from the folder's checkpoint, if there is one.
+        progress: Called after every frame with frame, first, last, seconds; an exception it raises (also
+            KeyboardInterrupt) stops the bake after writing a checkpoint.
+
+    Returns:
+        The report, as in report.json.
+    """

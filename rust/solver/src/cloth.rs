@@ -1,0 +1,205 @@
+//! One cloth as it is given: mesh, rest shape, springs, masses, pins. It never changes.
+
+use boucle_geometry::{Mesh, Vector};
+
+use crate::error::{Error, Result, bad_mesh};
+use crate::law::{Spring, springs_of_mesh};
+use crate::material::SpringMaterial;
+
+/// Farthest coordinate (m) accepted: beyond it differences lose the precision that springs need.
+pub(crate) const FARTHEST: f64 = 1e6;
+
+/// How heavy the particles are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mass {
+    /// Areal density (kg/m²): each face gives its corners equal shares of its mass.
+    Density(f64),
+    /// The same mass (kg) for every particle (the paper).
+    PerVertex(f64),
+    /// A mass (kg) for each particle.
+    Each(Vec<f64>),
+}
+
+/// One cloth at rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cloth {
+    /// What messages call it.
+    pub name: String,
+    /// Its faces; none for a bare network of springs.
+    pub mesh: Mesh,
+    /// Rest positions (m), world space.
+    pub positions: Vec<Vector>,
+    /// Its springs; at most one joins two particles.
+    pub springs: Vec<Spring>,
+    /// Mass (kg) of each particle.
+    pub masses: Vec<f64>,
+    /// Particles that follow their targets, not the forces.
+    pub pins: Vec<u32>,
+    /// Air damping, damping law, deformation rate and limiter; the springs hold their own stiffness.
+    pub material: SpringMaterial,
+}
+
+impl Cloth {
+    /// A cloth with the springs and masses that its mesh gives it.
+    ///
+    /// # Errors
+    /// When the mesh, a position (m), the mass or the material is not accepted.
+    pub fn from_mesh(
+        name: &str,
+        mesh: Mesh,
+        positions: Vec<Vector>,
+        mass: &Mass,
+        material: SpringMaterial,
+        pins: Vec<u32>,
+    ) -> Result<Self> {
+        let refuse = |reason| Err(Error::BadCloth { cloth: name.to_owned(), reason });
+        if positions.len() != mesh.vertex_count() {
+            let (got, wanted) = (positions.len(), mesh.vertex_count());
+            return refuse(format!("{got} positions are given; accepted: {wanted}, one a vertex"));
+        }
+        check_positions(name, &positions)?;
+        if let Some(vertex) = mesh.loose_vertices().first() {
+            return refuse(format!(
+                "vertex {vertex} belongs to no face; accepted: meshes without loose vertices"
+            ));
+        }
+        let masses = masses_of(name, &mesh, &positions, mass)?;
+        let springs = springs_of_mesh(&mesh, &positions, &material);
+        let cloth = Self { name: name.to_owned(), mesh, positions, springs, masses, pins, material };
+        cloth.check()?;
+        Ok(cloth)
+    }
+
+    /// Refuses a cloth that cannot be simulated.
+    ///
+    /// # Errors
+    /// [`Error::BadCloth`] or [`Error::OutOfDomain`] for the first thing that is not accepted.
+    pub fn check(&self) -> Result<()> {
+        self.material.check()?;
+        check_positions(&self.name, &self.positions)?;
+        self.check_springs()?;
+        let count = self.positions.len();
+        if self.masses.len() != count {
+            let given = self.masses.len();
+            return self.refuse(format!("{given} masses are given; accepted: {count}"));
+        }
+        let in_domain = |mass: f64| (1e-12..=1e9).contains(&mass);
+        if let Some(vertex) = (0..count).find(|&vertex| !in_domain(self.masses[vertex])) {
+            let mass = self.masses[vertex];
+            return self
+                .refuse(format!("vertex {vertex} has a mass of {mass} kg; accepted: 1e-12 to 1e9"));
+        }
+        if let Some(pin) = self.pins.iter().find(|&&pin| pin as usize >= count) {
+            return self.refuse(format!("pin {pin} is no vertex; accepted: 0 to {}", count - 1));
+        }
+        Ok(())
+    }
+
+    fn check_springs(&self) -> Result<()> {
+        let count = self.positions.len();
+        for spring in &self.springs {
+            let [a, b] = spring.ends;
+            if a == b || a.max(b) as usize >= count {
+                return self.refuse(format!(
+                    "a spring joins vertices {a} and {b}; accepted: two of the {count} vertices"
+                ));
+            }
+            if !(spring.rest_length >= 1e-9) {
+                return self.refuse(format!(
+                    "vertices {a} and {b} are {} m apart; accepted: at least 1e-9 m (merge them, or \
+                     move one)",
+                    spring.rest_length
+                ));
+            }
+            let is_positive = |value: f64| (0.0..=1e12).contains(&value);
+            if !is_positive(spring.stiffness) || !is_positive(spring.damping) {
+                return self.refuse(format!(
+                    "the spring of vertices {a} and {b} has stiffness {} N/m and damping {} N·s/m; \
+                     accepted: 0 to 1e12",
+                    spring.stiffness, spring.damping
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    fn refuse<T>(&self, reason: String) -> Result<T> {
+        Err(Error::BadCloth { cloth: self.name.clone(), reason })
+    }
+}
+
+fn check_positions(name: &str, positions: &[Vector]) -> Result<()> {
+    let refuse = |reason| Err(Error::BadCloth { cloth: name.to_owned(), reason });
+    if positions.is_empty() {
+        return refuse("it has no vertices; accepted: a mesh with at least one face".to_owned());
+    }
+    let is_bad = |position: &Vector| position.iter().any(|&x| !(x.abs() <= FARTHEST));
+    match positions.iter().position(is_bad) {
+        Some(vertex) => {
+            let [x, y, z] = positions[vertex].into();
+            refuse(format!(
+                "vertex {vertex} is at ({x}, {y}, {z}) m; accepted: finite, within 1e6 m of the origin"
+            ))
+        }
+        None => Ok(()),
+    }
+}
+
+fn masses_of(name: &str, mesh: &Mesh, positions: &[Vector], mass: &Mass) -> Result<Vec<f64>> {
+    let domain = "above 0, at most 1e9";
+    let out_of_domain = |quantity: &str, value| {
+        let quantity = format!("cloth \"{name}\": {quantity}");
+        Err(Error::OutOfDomain { quantity, value, domain })
+    };
+    match *mass {
+        Mass::Density(density) if !(density > 0.0 && density <= 1e9) => {
+            out_of_domain("density (kg/m²)", density)
+        }
+        Mass::PerVertex(each) if !(each > 0.0 && each <= 1e9) => {
+            out_of_domain("mass_per_vertex (kg)", each)
+        }
+        Mass::Density(density) => lumped_masses(name, mesh, positions, density),
+        Mass::PerVertex(each) => check_areas(name, mesh, positions).map(|()| vec![each; positions.len()]),
+        Mass::Each(ref masses) => check_areas(name, mesh, positions).map(|()| masses.clone()),
+    }
+}
+
+fn check_areas(name: &str, mesh: &Mesh, positions: &[Vector]) -> Result<()> {
+    lumped_masses(name, mesh, positions, 1.0).map(drop)
+}
+
+fn lumped_masses(
+    name: &str,
+    mesh: &Mesh,
+    positions: &[Vector],
+    density: f64,
+) -> Result<Vec<f64>> {
+    let mut masses = vec![0.0; positions.len()];
+    for (face, corners) in mesh.faces().enumerate() {
+        let area = mesh.vector_area(face, positions).norm();
+        if !(area > 1e-18) {
+            return Err(Error::BadCloth {
+                cloth: name.to_owned(),
+                reason: format!("face {face} has an area of {area:e} m²; accepted: above 1e-18"),
+            });
+        }
+        let share = density * area / corners.len() as f64;
+        for &corner in corners {
+            masses[corner as usize] += share;
+        }
+    }
+    Ok(masses)
+}
+
+/// A mesh of one named cloth, or its refusal.
+///
+/// # Errors
+/// [`Error::BadCloth`] with the mesh's own sentence.
+pub fn mesh_of(
+    name: &str,
+    vertex_count: usize,
+    face_starts: Vec<u32>,
+    corners: Vec<u32>,
+) -> Result<Mesh> {
+    Mesh::new(vertex_count, face_starts, corners).map_err(|error| bad_mesh(name, &error))
+}

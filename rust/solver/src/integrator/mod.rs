@@ -1,0 +1,92 @@
+//! The rules that move particles: one file each, the same step for every force.
+//!
+//! Each also knows how it treats one damped oscillator `x'' = -w² x - c x'`: the 2 x 2 matrix by which a step
+//! multiplies (x, v), from which [`crate::stability`] finds the largest stable step.
+
+mod forward_euler;
+mod leapfrog;
+mod midpoint;
+mod rk4;
+mod symplectic_euler;
+mod verlet;
+
+use nalgebra::Matrix2;
+
+use crate::force::AirScratch;
+use crate::settings::IntegratorKind;
+use crate::state::State;
+use crate::system::System;
+
+/// States that an integrator passes through within a step, kept to save allocations.
+#[derive(Debug)]
+pub(crate) struct Scratch {
+    pub(crate) stages: [State; 3],
+    pub(crate) next: State,
+    pub(crate) air: AirScratch,
+}
+
+impl Scratch {
+    pub(crate) fn new(state: &State) -> Self {
+        Self {
+            stages: std::array::from_fn(|_| state.clone()),
+            next: state.clone(),
+            air: AirScratch::default(),
+        }
+    }
+}
+
+/// A rule that moves particles.
+pub(crate) trait Integrator: Send + Sync {
+    /// Moves `state` by one step of h seconds.
+    fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64);
+
+    /// The matrix by which a step of h seconds multiplies (x, v) of `x'' = -w² x - c x'`.
+    fn amplification(&self, w_squared: f64, c: f64, h: f64) -> Matrix2<f64>;
+}
+
+/// The rule of a name.
+pub(crate) fn integrator(kind: IntegratorKind) -> &'static dyn Integrator {
+    match kind {
+        IntegratorKind::ForwardEuler => &forward_euler::ForwardEuler,
+        IntegratorKind::SymplecticEuler => &symplectic_euler::SymplecticEuler,
+        IntegratorKind::Verlet => &verlet::Verlet,
+        IntegratorKind::Leapfrog => &leapfrog::Leapfrog,
+        IntegratorKind::Midpoint => &midpoint::Midpoint,
+        IntegratorKind::Rk4 => &rk4::Rk4,
+    }
+}
+
+/// `out = from + h rate(at)`, the stage that Runge-Kutta rules are made of.
+fn euler_stage(
+    system: &System,
+    from: &State,
+    at: &State,
+    out: &mut State,
+    air: &mut AirScratch,
+    h: f64,
+) {
+    system.advance(at, out, air, |chunk| {
+        let x = &from.position.0[chunk.axis][chunk.first..];
+        let v = &from.velocity.0[chunk.axis][chunk.first..];
+        let rate = &at.velocity.0[chunk.axis][chunk.first..];
+        for (i, a) in chunk.acceleration.iter().enumerate() {
+            chunk.position[i] = x[i] + h * rate[i];
+            chunk.velocity[i] = v[i] + h * a;
+        }
+    });
+}
+
+/// The matrix of `(x, v)' = (v, -w² x - c v)`.
+fn oscillator(w_squared: f64, c: f64) -> Matrix2<f64> {
+    Matrix2::new(0.0, 1.0, -w_squared, -c)
+}
+
+/// The matrix of a drift, `x += h v`.
+fn drift(h: f64) -> Matrix2<f64> {
+    Matrix2::new(1.0, h, 0.0, 1.0)
+}
+
+/// The matrix of a kick, `v += h a`.
+fn kick(w_squared: f64, c: f64, h: f64) -> Matrix2<f64> {
+    Matrix2::new(1.0, 0.0, -h * w_squared, 1.0 - h * c)
+}

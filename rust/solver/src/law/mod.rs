@@ -1,0 +1,7 @@
+//! Laws: how a piece of cloth answers deformation.
+
+pub(crate) mod spring;
+mod spring_network;
+
+pub use spring::Spring;
+pub use spring_network::springs_of_mesh;

@@ -1,0 +1,38 @@
+//! The physics of Boucle: cloth as particles and springs, moved frame by frame.
+//!
+//! A [`Simulation`] holds [`Cloth`]s, which never change, and their state, which does. One frame is
+//!
+//! 1. plan: how many substeps hold the stability bound ([`Settings::step_size`]),
+//! 2. start the pins towards their targets,
+//! 3. step: evaluate all forces, then move all particles, then limit strain, substep after substep,
+//! 4. certify: strain, energy and a hash of every position bit ([`Certificate`]).
+//!
+//! SI units, Z up, world space, f64. The same input gives the same bits for any number of threads: every particle
+//! gathers its own forces in a fixed order, and nothing is summed across threads.
+
+mod certificate;
+mod checkpoint;
+mod cloth;
+mod error;
+mod force;
+mod integrator;
+mod kernel;
+mod law;
+mod limit;
+mod material;
+mod pins;
+mod settings;
+mod simulation;
+mod stability;
+mod state;
+mod step;
+mod system;
+
+pub use certificate::Certificate;
+pub use cloth::{Cloth, Mass, mesh_of};
+pub use error::{Error, Result};
+pub use force::{Region, Wind, WindLaw};
+pub use law::{Spring, springs_of_mesh};
+pub use material::{DampingLaw, Limiter, SpringKind, SpringMaterial};
+pub use settings::{IntegratorKind, Settings, StepSize};
+pub use simulation::Simulation;

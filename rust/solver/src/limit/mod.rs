@@ -1,0 +1,41 @@
+//! Strain limits: what keeps springs below their allowed length `(1 + rate) L0`.
+//!
+//! `stiffen` (the paper's equation 6) is part of the spring law; `provot` and `project` act on the state after
+//! every step.
+
+mod order;
+mod project;
+mod provot;
+
+pub(crate) use project::Project;
+pub(crate) use provot::Provot;
+
+use crate::cloth::Cloth;
+use crate::material::Limiter;
+use crate::state::State;
+
+/// The limiter of one cloth that acts after a step.
+#[derive(Debug)]
+pub(crate) enum Limit {
+    Provot(Provot),
+    Project(Project),
+}
+
+impl Limit {
+    /// The limiter of a cloth whose first particle is `base`, if it has one that acts after a step.
+    pub(crate) fn of(cloth: &Cloth, base: u32, inverse_masses: &[f64]) -> Option<Self> {
+        match cloth.material.limiter {
+            Limiter::None | Limiter::Stiffen => None,
+            Limiter::Provot => Some(Self::Provot(Provot::new(cloth, base))),
+            Limiter::Project => Some(Self::Project(Project::new(cloth, base, inverse_masses))),
+        }
+    }
+
+    /// Moves ends that are too far apart; `is_last` marks the last step of a frame, whose result is seen.
+    pub(crate) fn apply(&mut self, state: &mut State, inverse_masses: &[f64], is_last: bool) {
+        match self {
+            Self::Provot(limit) => limit.apply(state, inverse_masses),
+            Self::Project(limit) => limit.apply(state, inverse_masses, is_last),
+        }
+    }
+}

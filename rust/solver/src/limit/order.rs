@@ -1,0 +1,106 @@
+//! The order in which edges are limited: outward from the pins.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// An edge to be limited, its end nearer to the pins first.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    pub(super) near: u32,
+    pub(super) far: u32,
+    pub(super) rest_length: f64,
+    /// Whether a chain of edges leads to a pin.
+    pub(super) hangs: bool,
+}
+
+/// A distance (m) that sorts; distances are never NaN.
+#[derive(Clone, Copy, PartialEq)]
+struct Distance(f64);
+
+impl Eq for Distance {}
+
+impl PartialOrd for Distance {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Distance {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
+/// Edges sorted by the distance, along edges at rest, of their nearer end from the pins; what hangs on no pin comes
+/// last, by number.
+pub(super) fn outward(
+    edges: &[([u32; 2], f64)],
+    particle_count: usize,
+    is_pinned: impl Fn(u32) -> bool,
+) -> Vec<Edge> {
+    let distances = distances(edges, particle_count, is_pinned);
+    let mut sorted: Vec<(Distance, Distance, Edge)> = edges
+        .iter()
+        .map(|&([a, b], rest_length)| {
+            let [da, db] = [a, b].map(|end| distances[end as usize]);
+            let (near, far) = if db < da { (b, a) } else { (a, b) };
+            let hangs = da.min(db).is_finite();
+            let edge = Edge { near, far, rest_length, hangs };
+            (Distance(da.min(db)), Distance(da.max(db)), edge)
+        })
+        .collect();
+    sorted.sort_by_key(|&(near, far, edge)| (near, far, edge.near, edge.far));
+    sorted.into_iter().map(|(_, _, edge)| edge).collect()
+}
+
+/// Dijkstra's distances from the pins (m).
+fn distances(
+    edges: &[([u32; 2], f64)],
+    particle_count: usize,
+    is_pinned: impl Fn(u32) -> bool,
+) -> Vec<f64> {
+    let mut neighbors = vec![Vec::new(); particle_count];
+    for &([a, b], length) in edges {
+        neighbors[a as usize].push((b, length));
+        neighbors[b as usize].push((a, length));
+    }
+    let mut distances = vec![f64::INFINITY; particle_count];
+    let mut heap = BinaryHeap::new();
+    for particle in (0..particle_count as u32).filter(|&particle| is_pinned(particle)) {
+        distances[particle as usize] = 0.0;
+        heap.push(Reverse((Distance(0.0), particle)));
+    }
+    while let Some(Reverse((Distance(distance), particle))) = heap.pop() {
+        if distance > distances[particle as usize] {
+            continue;
+        }
+        for &(neighbor, length) in &neighbors[particle as usize] {
+            let through = distance + length;
+            if through < distances[neighbor as usize] {
+                distances[neighbor as usize] = through;
+                heap.push(Reverse((Distance(through), neighbor)));
+            }
+        }
+    }
+    distances
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_follow_each_other_outward_from_the_pin() {
+        let chain = [([2, 3], 1.0), ([0, 1], 1.0), ([1, 2], 1.0)];
+        let order = outward(&chain, 4, |particle| particle == 3);
+        let ends: Vec<_> = order.iter().map(|edge| [edge.near, edge.far]).collect();
+        assert_eq!(ends, [[3, 2], [2, 1], [1, 0]]);
+        assert!(order.iter().all(|edge| edge.hangs));
+    }
+
+    #[test]
+    fn a_free_piece_comes_last_and_hangs_on_nothing() {
+        let order = outward(&[([0, 1], 1.0), ([2, 3], 1.0)], 4, |particle| particle == 2);
+        assert_eq!(order.iter().map(|edge| edge.hangs).collect::<Vec<_>>(), [true, false]);
+    }
+}

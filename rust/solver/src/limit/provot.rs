@@ -1,0 +1,57 @@
+//! Provot's correction: after each step, the ends of every stretch and shear spring that is too long are moved back
+//! to its allowed length, spring after spring, once. Velocities stay.
+//!
+//! ```text
+//! excess = |d| - (1 + rate) L0
+//! x_i -= w_i/(w_i + w_j) excess n        x_j += w_j/(w_i + w_j) excess n
+//! ```
+//!
+//! One pass does not undo what its own moves stretch again, so the limit is approached, not held.
+//!
+//! Source: Provot 1995.
+
+use crate::cloth::Cloth;
+use crate::material::SpringKind;
+use crate::state::State;
+
+#[derive(Debug)]
+pub(crate) struct Provot {
+    springs: Vec<Limited>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Limited {
+    ends: [u32; 2],
+    longest: f64,
+}
+
+impl Provot {
+    pub(crate) fn new(cloth: &Cloth, base: u32) -> Self {
+        let allowed = 1.0 + cloth.material.deformation_rate;
+        let springs = cloth.springs.iter().filter(|spring| spring.kind != SpringKind::Bend);
+        let limited = springs.map(|spring| Limited {
+            ends: spring.ends.map(|end| end + base),
+            longest: allowed * spring.rest_length,
+        });
+        Self { springs: limited.collect() }
+    }
+
+    pub(crate) fn apply(&self, state: &mut State, inverse_masses: &[f64]) {
+        for &Limited { ends: [a, b], longest } in &self.springs {
+            let squared = state.position.distance_squared(a, b);
+            if !(squared > longest * longest) {
+                continue;
+            }
+            let [wa, wb] = [a, b].map(|end| inverse_masses[end as usize]);
+            if wa + wb == 0.0 {
+                continue;
+            }
+            let back = (1.0 - longest / squared.sqrt()) / (wa + wb);
+            for axis in &mut state.position.0 {
+                let span = axis[a as usize] - axis[b as usize];
+                axis[a as usize] -= wa * back * span;
+                axis[b as usize] += wb * back * span;
+            }
+        }
+    }
+}

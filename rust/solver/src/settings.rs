@@ -1,0 +1,122 @@
+//! How a simulation is stepped, in the words of the scene file.
+
+use boucle_geometry::Vector;
+
+use crate::error::{Error, Result};
+
+/// Which rule moves the particles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum IntegratorKind {
+    /// `x += h v` with the old velocity, then `v += h a`.
+    ForwardEuler,
+    /// `v += h a`, then `x += h v` with the new velocity (the paper).
+    #[default]
+    SymplecticEuler,
+    /// Velocity Verlet: half a kick, a drift, half a kick.
+    Verlet,
+    /// Leapfrog: half a drift, a kick, half a drift.
+    Leapfrog,
+    /// Runge-Kutta of order 2, by the midpoint.
+    Midpoint,
+    /// The classic Runge-Kutta of order 4.
+    Rk4,
+}
+
+impl IntegratorKind {
+    /// Every integrator.
+    pub const ALL: [Self; 6] = [
+        Self::ForwardEuler,
+        Self::SymplecticEuler,
+        Self::Verlet,
+        Self::Leapfrog,
+        Self::Midpoint,
+        Self::Rk4,
+    ];
+
+    /// The name in scene files and panels.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::ForwardEuler => "forward_euler",
+            Self::SymplecticEuler => "symplectic_euler",
+            Self::Verlet => "verlet",
+            Self::Leapfrog => "leapfrog",
+            Self::Midpoint => "midpoint",
+            Self::Rk4 => "rk4",
+        }
+    }
+}
+
+/// How a frame is cut into steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum StepSize {
+    /// As few as hold the stability bound.
+    #[default]
+    Auto,
+    /// This many a frame.
+    Substeps(u32),
+    /// Equal steps of at most this many seconds.
+    Seconds(f64),
+}
+
+/// What holds for every cloth of a simulation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Acceleration of gravity (m/s²).
+    pub gravity: Vector,
+    /// Frames a second.
+    pub fps: f64,
+    /// The frame at which the cloths are at rest.
+    pub first_frame: i32,
+    /// Which rule moves the particles.
+    pub integrator: IntegratorKind,
+    /// How a frame is cut into steps.
+    pub step_size: StepSize,
+    /// Takes a step beyond the stability bound as asked, to show the breakdown.
+    pub allow_unstable: bool,
+    /// Worker threads; 0 takes every core. The result does not depend on it.
+    pub threads: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            gravity: Vector::new(0.0, 0.0, -9.81),
+            fps: 24.0,
+            first_frame: 1,
+            integrator: IntegratorKind::default(),
+            step_size: StepSize::default(),
+            allow_unstable: false,
+            threads: 0,
+        }
+    }
+}
+
+impl Settings {
+    /// Refuses values outside their domains.
+    ///
+    /// # Errors
+    /// [`Error::OutOfDomain`] for the first value that is not accepted.
+    pub fn check(&self) -> Result<()> {
+        let within = |quantity: &str, value: f64, domain: &'static str, is_accepted: bool| {
+            if is_accepted {
+                return Ok(());
+            }
+            Err(Error::OutOfDomain { quantity: quantity.to_owned(), value, domain })
+        };
+        for value in &self.gravity {
+            within("gravity (m/s²)", *value, "-1e6 to 1e6", value.abs() <= 1e6)?;
+        }
+        let is_rate = (0.01..=1e6).contains(&self.fps);
+        within("fps (1/s)", self.fps, "0.01 to 1e6", is_rate)?;
+        match self.step_size {
+            StepSize::Auto => Ok(()),
+            StepSize::Substeps(count) => {
+                within("substeps", f64::from(count), "\"auto\", or 1 or more", count > 0)
+            }
+            StepSize::Seconds(step) => {
+                within("time_step (s)", step, "1e-9 to 1000", (1e-9..=1e3).contains(&step))
+            }
+        }
+    }
+}

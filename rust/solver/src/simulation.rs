@@ -1,0 +1,381 @@
+//! A simulation as the outside holds it: cloths that move frame by frame.
+
+use std::fmt;
+
+use boucle_geometry::Vector;
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use xxhash_rust::xxh3::Xxh3;
+
+use crate::certificate::{Certificate, certify, length};
+use crate::checkpoint::Checkpoint;
+use crate::cloth::{Cloth, FARTHEST};
+use crate::error::{Error, Result};
+use crate::force::Wind;
+use crate::integrator::{Integrator, Scratch, integrator};
+use crate::law::spring::Law;
+use crate::limit::Limit;
+use crate::material::SpringKind;
+use crate::pins::Pins;
+use crate::settings::{Settings, StepSize};
+use crate::stability::{Spectrum, stiffening};
+use crate::state::State;
+use crate::step::Step;
+use crate::system::System;
+
+/// Most substeps a frame may take.
+const MOST_SUBSTEPS: u32 = 200_000;
+
+/// How much of the largest stable step `auto` takes.
+const AUTO_STEP: f64 = 0.95;
+
+/// Cloths in motion, at the end of a frame.
+pub struct Simulation {
+    cloths: Vec<Cloth>,
+    /// First particle of each cloth.
+    bases: Vec<u32>,
+    settings: Settings,
+    system: System,
+    spectrum: Spectrum,
+    digest: u64,
+    pins: Pins,
+    limits: Vec<Limit>,
+    state: State,
+    /// The state at the start of a frame, to fall back on.
+    good: State,
+    scratch: Scratch,
+    frame: i32,
+    /// Steps that led to the present frame.
+    substeps_taken: u32,
+    threads: ThreadPool,
+}
+
+impl fmt::Debug for Simulation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Simulation of {} particles at frame {}", self.state.len(), self.frame)
+    }
+}
+
+impl Simulation {
+    /// A simulation at its first frame, at rest.
+    ///
+    /// # Errors
+    /// When a cloth, a wind or a setting is not accepted, or no allowed number of substeps is stable.
+    pub fn new(cloths: Vec<Cloth>, winds: Vec<Wind>, settings: Settings) -> Result<Self> {
+        settings.check()?;
+        cloths.iter().try_for_each(Cloth::check)?;
+        winds.iter().try_for_each(|wind| wind.check(&cloths))?;
+        let digest = digest(&cloths, &winds, &settings);
+        let bases = cloths.iter().scan(0, |next, cloth| {
+            let base = *next;
+            *next += cloth.positions.len() as u32;
+            Some(base)
+        });
+        let bases: Vec<u32> = bases.collect();
+        let positions: Vec<Vector> =
+            cloths.iter().flat_map(|cloth| cloth.positions.iter().copied()).collect();
+        let state = State::at_rest(&positions);
+        let threads = ThreadPoolBuilder::new()
+            .num_threads(settings.threads)
+            .thread_name(|index| format!("boucle-{index}"))
+            .build()
+            .map_err(|_| Error::Threads(settings.threads))?;
+        let pinned = bases.iter().zip(&cloths).flat_map(|(base, cloth)| {
+            cloth.pins.iter().map(move |pin| base + pin)
+        });
+        let mut simulation = Self {
+            pins: Pins::new(pinned, &state),
+            system: System::new(&cloths, winds, settings.gravity),
+            spectrum: Spectrum::default(),
+            limits: Vec::new(),
+            good: state.clone(),
+            scratch: Scratch::new(&state),
+            frame: settings.first_frame,
+            substeps_taken: 0,
+            cloths,
+            bases,
+            settings,
+            digest,
+            state,
+            threads,
+        };
+        simulation.follow_pins();
+        simulation.plan()?;
+        Ok(simulation)
+    }
+
+    /// The frame that the state belongs to.
+    #[must_use]
+    pub fn frame(&self) -> i32 {
+        self.frame
+    }
+
+    /// How many cloths there are.
+    #[must_use]
+    pub fn cloth_count(&self) -> usize {
+        self.cloths.len()
+    }
+
+    /// A cloth as it was given.
+    ///
+    /// # Panics
+    /// When there is no cloth of this number; so do the other functions that take one.
+    #[must_use]
+    pub fn cloth(&self, cloth: usize) -> &Cloth {
+        &self.cloths[cloth]
+    }
+
+    /// The largest stable step (s) of the springs as they are now, at most a frame; 0 if there is none.
+    #[must_use]
+    pub fn safe_time_step(&self) -> f64 {
+        let factor = stiffening(&self.cloths, |cloth| self.longest_ratio(cloth));
+        self.spectrum.stiffened(factor).largest_step(self.integrator(), self.frame_duration())
+    }
+
+    /// Steps that the next frame takes; 0 if there is no stable number.
+    #[must_use]
+    pub fn substeps(&self) -> u32 {
+        self.plan().unwrap_or(0)
+    }
+
+    /// Where the pins of a cloth are to be at the end of the next frame (m): a position for each vertex, of which
+    /// only the pinned are read. They move there in a straight line.
+    pub fn set_pin_targets(&mut self, cloth: usize, targets: &[Vector]) {
+        let base = self.bases[cloth];
+        self.pins.aim(|particle| {
+            let vertex = particle.checked_sub(base)?;
+            targets.get(vertex as usize).copied()
+        });
+    }
+
+    /// Lets pins go, with the velocity they have.
+    pub fn release_pins(&mut self, cloth: usize, vertices: &[u32]) {
+        let base = self.bases[cloth];
+        self.pins.release(|particle| {
+            particle.checked_sub(base).is_some_and(|vertex| vertices.contains(&vertex))
+        });
+        self.follow_pins();
+    }
+
+    /// Puts the vertices of a cloth at these positions (m), at rest. Rest lengths stay.
+    pub fn set_positions(&mut self, cloth: usize, positions: &[Vector]) {
+        let base = self.bases[cloth] as usize;
+        for (vertex, position) in positions.iter().enumerate().take(self.cloths[cloth].positions.len()) {
+            self.state.position.set(base + vertex, position);
+            self.state.velocity.set(base + vertex, &Vector::zeros());
+        }
+        let state = &self.state;
+        let end = base + self.cloths[cloth].positions.len();
+        self.pins.aim(|particle| {
+            (base..end).contains(&(particle as usize)).then(|| state.position.get(particle as usize))
+        });
+    }
+
+    /// Moves on by one frame.
+    ///
+    /// # Errors
+    /// [`Error::Diverged`] leaves the state of the last good frame; [`Error::TooManySubsteps`] and
+    /// [`Error::Unstable`] leave the state as it is.
+    pub fn advance(&mut self) -> Result<Certificate> {
+        let substeps = self.plan()?;
+        let h = self.frame_duration() / f64::from(substeps);
+        self.good.copy_from(&self.state);
+        let duration = self.frame_duration();
+        self.pins.start(&mut self.state, duration);
+        let rule = self.integrator();
+        let Self { system, pins, limits, state, scratch, threads, .. } = self;
+        threads.install(|| {
+            for substep in 1..=substeps {
+                let step =
+                    Step { system, integrator: rule, pins, h, is_last: substep == substeps };
+                step.run(state, scratch, limits);
+            }
+        });
+        if let Some(particle) = first_lost(&self.state) {
+            self.state.copy_from(&self.good);
+            let cloth = self.bases.partition_point(|&base| base as usize <= particle) - 1;
+            return Err(Error::Diverged {
+                frame: self.frame + 1,
+                vertex: particle - self.bases[cloth] as usize,
+                cloth: self.cloths[cloth].name.clone(),
+            });
+        }
+        self.frame += 1;
+        self.substeps_taken = substeps;
+        Ok(self.certificate())
+    }
+
+    /// The certificate of the present state.
+    #[must_use]
+    pub fn certificate(&self) -> Certificate {
+        let cloths = self.cloths.iter().zip(self.bases.iter().copied());
+        certify(cloths, &self.state, &self.settings.gravity, self.frame, self.substeps_taken)
+    }
+
+    /// Positions (m) of a cloth's vertices, world space.
+    #[must_use]
+    pub fn positions(&self, cloth: usize) -> Vec<Vector> {
+        self.particles(cloth).map(|particle| self.state.position.get(particle)).collect()
+    }
+
+    /// Velocities (m/s) of a cloth's vertices.
+    #[must_use]
+    pub fn velocities(&self, cloth: usize) -> Vec<Vector> {
+        self.particles(cloth).map(|particle| self.state.velocity.get(particle)).collect()
+    }
+
+    /// The largest strain of the edges at each vertex of a cloth.
+    #[must_use]
+    pub fn vertex_strain(&self, cloth: usize) -> Vec<f32> {
+        let (cloth, base) = (&self.cloths[cloth], self.bases[cloth]);
+        let mut strain = vec![-1.0_f32; cloth.positions.len()];
+        for spring in cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Stretch) {
+            let elongation = length(&self.state, spring.ends, base) / spring.rest_length - 1.0;
+            for end in spring.ends {
+                let most = &mut strain[end as usize];
+                *most = most.max(elongation as f32);
+            }
+        }
+        strain
+    }
+
+    /// The present stiffness (N/m) of each spring of a cloth: what equation 6 makes of it, if it is the limiter.
+    #[must_use]
+    pub fn spring_stiffness(&self, cloth: usize) -> Vec<f64> {
+        let (cloth, base) = (&self.cloths[cloth], self.bases[cloth]);
+        let law = Law::of(&cloth.material);
+        let stiffness = cloth.springs.iter().map(|spring| {
+            let ratio = length(&self.state, spring.ends, base) / spring.rest_length;
+            law.stiffness_at(spring.stiffness, ratio)
+        });
+        stiffness.collect()
+    }
+
+    /// The whole state as bytes.
+    #[must_use]
+    pub fn checkpoint(&self) -> Vec<u8> {
+        let count = self.state.len();
+        let checkpoint = Checkpoint {
+            digest: self.digest,
+            frame: self.frame,
+            substeps: self.substeps_taken,
+            state: self.state.clone(),
+            is_pinned: (0..count).map(|particle| self.system.is_pinned(particle)).collect(),
+        };
+        checkpoint.to_bytes()
+    }
+
+    /// Takes up the state of a checkpoint; what follows is bit-equal to never having stopped.
+    ///
+    /// # Errors
+    /// [`Error::BadCheckpoint`] when it is damaged or of other cloths or settings.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+        let checkpoint = Checkpoint::from_bytes(bytes)?;
+        if checkpoint.digest != self.digest || checkpoint.state.len() != self.state.len() {
+            return Err(Error::BadCheckpoint(
+                "is of another scene or other settings; accepted: the one that it was made from",
+            ));
+        }
+        self.state = checkpoint.state;
+        self.frame = checkpoint.frame;
+        self.substeps_taken = checkpoint.substeps;
+        let pinned = checkpoint.is_pinned.iter().enumerate().filter(|&(_, &is_pinned)| is_pinned);
+        self.pins = Pins::new(pinned.map(|(particle, _)| particle as u32), &self.state);
+        self.follow_pins();
+        Ok(())
+    }
+
+    fn integrator(&self) -> &'static dyn Integrator {
+        integrator(self.settings.integrator)
+    }
+
+    fn frame_duration(&self) -> f64 {
+        1.0 / self.settings.fps
+    }
+
+    fn particles(&self, cloth: usize) -> std::ops::Range<usize> {
+        let base = self.bases[cloth] as usize;
+        base..base + self.cloths[cloth].positions.len()
+    }
+
+    /// Largest ratio of length to rest length over the springs of a cloth.
+    fn longest_ratio(&self, cloth: usize) -> f64 {
+        let (cloth, base) = (&self.cloths[cloth], self.bases[cloth]);
+        let ratio = |spring: &crate::law::Spring| {
+            length(&self.state, spring.ends, base) / spring.rest_length
+        };
+        cloth.springs.iter().map(ratio).fold(0.0, f64::max)
+    }
+
+    /// Rebuilds what depends on which particles are pinned.
+    fn follow_pins(&mut self) {
+        for particle in 0..self.state.len() {
+            self.system.set_pinned(particle, false);
+        }
+        for particle in self.pins.particles() {
+            self.system.set_pinned(particle as usize, true);
+        }
+        let placed = self.cloths.iter().zip(&self.bases);
+        let inverse_masses = &self.system.inverse_masses;
+        self.limits =
+            placed.filter_map(|(cloth, &base)| Limit::of(cloth, base, inverse_masses)).collect();
+        self.spectrum = Spectrum::of(&self.cloths, &self.system);
+    }
+
+    /// Steps of the next frame, or why there is no such number.
+    fn plan(&self) -> Result<u32> {
+        let duration = self.frame_duration();
+        let asked = match self.settings.step_size {
+            StepSize::Auto => None,
+            StepSize::Substeps(count) => Some(f64::from(count)),
+            // A step that divides the frame but for rounding is not cut once more.
+            StepSize::Seconds(step) => Some((duration / step * (1.0 - 1e-9)).ceil().max(1.0)),
+        };
+        let allowed = |count: f64| {
+            if count <= f64::from(MOST_SUBSTEPS) {
+                return Ok(count as u32);
+            }
+            let integrator = self.settings.integrator.name();
+            Err(Error::TooManySubsteps { substeps: count, limit: MOST_SUBSTEPS, integrator })
+        };
+        if let Some(count) = asked
+            && self.settings.allow_unstable
+        {
+            return allowed(count);
+        }
+        let bound = self.safe_time_step();
+        match asked {
+            None => allowed((duration / (AUTO_STEP * bound)).ceil()),
+            Some(count) if duration / count <= bound * (1.0 + 1e-9) => allowed(count),
+            Some(count) => {
+                let substeps = (duration / bound).ceil() as u64;
+                Err(Error::Unstable { step: duration / count, bound, substeps })
+            }
+        }
+    }
+}
+
+/// The first particle that left the finite numbers, or the space in which numbers are fine enough.
+fn first_lost(state: &State) -> Option<usize> {
+    let is_lost = |&particle: &usize| {
+        let position = state.position.get(particle);
+        position.iter().any(|x| !(x.abs() <= 1e3 * FARTHEST))
+            || state.velocity.get(particle).iter().any(|v| !v.is_finite())
+    };
+    (0..state.len()).find(is_lost)
+}
+
+/// A hash of everything that the motion depends on and that does not change.
+fn digest(cloths: &[Cloth], winds: &[Wind], settings: &Settings) -> u64 {
+    let mut hasher = Xxh3::new();
+    let settings = Settings { threads: 0, ..settings.clone() };
+    // Debug output of floats is exact: the shortest text that reads back as the same bits.
+    hasher.update(format!("{settings:?} {winds:?}").as_bytes());
+    for cloth in cloths {
+        let Cloth { material, pins, springs, .. } = cloth;
+        hasher.update(format!("{material:?} {pins:?} {springs:?}").as_bytes());
+        for value in cloth.masses.iter().chain(cloth.positions.iter().flatten()) {
+            hasher.update(&value.to_le_bytes());
+        }
+    }
+    hasher.digest()
+}

@@ -1,0 +1,31 @@
+//! One substep: a table of contents.
+
+use crate::integrator::{Integrator, Scratch};
+use crate::limit::Limit;
+use crate::pins::Pins;
+use crate::state::State;
+use crate::system::System;
+
+/// What a substep works with.
+pub(crate) struct Step<'a> {
+    pub(crate) system: &'a System,
+    pub(crate) integrator: &'a dyn Integrator,
+    pub(crate) pins: &'a Pins,
+    /// Length (s).
+    pub(crate) h: f64,
+    /// Whether it ends a frame.
+    pub(crate) is_last: bool,
+}
+
+impl Step<'_> {
+    /// Moves the state by one substep.
+    pub(crate) fn run(&self, state: &mut State, scratch: &mut Scratch, limits: &mut [Limit]) {
+        self.integrator.step(self.system, state, scratch, self.h);
+        if self.is_last {
+            self.pins.arrive(state);
+        }
+        for limit in limits {
+            limit.apply(state, &self.system.inverse_masses, self.is_last);
+        }
+    }
+}

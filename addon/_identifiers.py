@@ -1,0 +1,48 @@
+"""Names that Blender, files and scripts know; each stands here once."""
+
+
+class Operators:
+    """Operator names, as `bpy.ops` has them."""
+
+    ADD_CLOTH = "boucle.add_cloth"
+    ENABLE = "boucle.enable"
+    DISABLE = "boucle.disable"
+    BAKE = "boucle.bake"
+    BAKE_ALL = "boucle.bake_all"
+    FREE_BAKE = "boucle.free_bake"
+    RESTORE_BAKE = "boucle.restore_bake"
+    ADOPT_BAKE = "boucle.adopt_bake"
+    RESET = "boucle.reset"
+    CHECK = "boucle.check"
+
+
+class Panels:
+    """Panel names."""
+
+    CLOTH = "BOUCLE_PT_cloth"
+    SPRINGS = "BOUCLE_PT_springs"
+    DAMPING = "BOUCLE_PT_damping"
+    DEFORMATION = "BOUCLE_PT_deformation"
+    SHAPE = "BOUCLE_PT_shape"
+    FORCES = "BOUCLE_PT_forces"
+    SOLVER = "BOUCLE_PT_solver"
+    CACHE = "BOUCLE_PT_cache"
+
+
+EXTENSION = "boucle"
+POINTER = "boucle"
+"""Name of the settings on every object: `object.boucle`."""
+
+TARGET_ATTRIBUTE = "boucle_target"
+"""Point attribute: where the modifiers above the slot put each vertex (m, object space)."""
+REST_ATTRIBUTE = "boucle_rest"
+"""Point attribute: the rest shape (m, object space), there only while `position` shows a frame."""
+
+TARGET_MODIFIER = "Boucle Target"
+CACHE_MODIFIER = "Boucle Cache"
+TARGET_GROUP = "Boucle Target"
+TARGET_GROUP_MARK = "boucle_target_group"
+"""Custom property that tells our node group from a stranger's of the same name."""
+
+CACHE_FOLDER = "boucle_cache"
+LIVE_FOLDER = "boucle_live"

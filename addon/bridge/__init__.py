@@ -1,0 +1,1 @@
+"""Between Blender's data and arrays: sampling, modifiers, live frames and bakes."""

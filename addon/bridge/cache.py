@@ -1,0 +1,212 @@
+"""The cache of a cloth: its files, the modifier that plays it, and what it is worth, in words."""
+
+from __future__ import annotations
+
+import json
+import os
+import uuid
+from typing import Any
+
+import bpy
+
+from ..core import cache_paths, drift, pc2, report
+from ..core.cache_paths import CacheFiles
+from ..core.progress import size
+from ..core.refusal import Refusal, cannot_write
+from . import registry, runtime, settings, slot
+
+
+def absolute(obj: bpy.types.Object, path: str) -> str:
+    """A path as the file system knows it; `//` starts from the file that owns the object."""
+    return os.path.normpath(bpy.path.abspath(path, library=obj.library)) if path else ""
+
+
+def played_path(obj: bpy.types.Object) -> str:
+    """The absolute path of the bake that the object plays; empty without one."""
+    found = slot.find(obj)
+    if found is None or cache_paths.is_live(found.cache.filepath):
+        return ""
+    return absolute(obj, found.cache.filepath)
+
+
+def is_baked(obj: bpy.types.Object) -> bool:
+    """Whether the object plays a bake (which may be missing or outdated)."""
+    return bool(played_path(obj))
+
+
+def own_folder() -> str:
+    """The folder for caches of this blend file."""
+    return cache_paths.own_folder(bpy.data.filepath, runtime.session_folder())
+
+
+def own_files(obj: bpy.types.Object) -> CacheFiles:
+    """Where this object's own bake goes."""
+    ensure_identity()
+    return cache_paths.files_of(os.path.join(own_folder(), f"{obj.boucle.uuid}.pc2"))
+
+
+def ensure_identity() -> None:
+    """Give every cloth of the file an identity of its own: of two that share one, the newer is the copy."""
+    taken: set[str] = set()
+    for obj in sorted(registry.local_cloths(), key=lambda obj: obj.session_uid):
+        if not obj.boucle.uuid or obj.boucle.uuid in taken:
+            obj.boucle.uuid = uuid.uuid4().hex
+        taken.add(obj.boucle.uuid)
+
+
+def attach(obj: bpy.types.Object, pc2_path: str, record: dict[str, Any]) -> None:
+    """Let the object play a bake; record is what the bake remembers."""
+    found = slot.ensure(obj)
+    path = cache_paths.relative_to_blend(pc2_path, bpy.data.filepath)
+    if found.cache.filepath != path:
+        found.cache.filepath = path
+    point_modifier(found.cache, int(record["first"]))
+    obj.boucle.bake_record = json.dumps(record)
+    obj.update_tag()
+
+
+def point_modifier(modifier: bpy.types.MeshCacheModifier, first_frame: int) -> None:
+    """Make a Mesh Cache modifier play a PC2 whose first sample is at first_frame."""
+    modifier.cache_format = "PC2"
+    modifier.time_mode = "FRAME"
+    modifier.play_mode = "SCENE"
+    modifier.deform_mode = "OVERWRITE"
+    modifier.interpolation = "LINEAR"
+    modifier.frame_start = float(first_frame)
+    modifier.frame_scale = 1.0
+    modifier.factor = 1.0
+
+
+def detach(obj: bpy.types.Object) -> None:
+    """Let the object play no bake; files stay."""
+    found = slot.find(obj)
+    if found is not None:
+        found.cache.filepath = ""
+    obj.boucle.bake_record = ""
+    obj.update_tag()
+
+
+def reattach(obj: bpy.types.Object) -> bool:
+    """Play the object's own bake again if its files are there and fit; whether they do."""
+    if not obj.boucle.uuid:
+        return False
+    files = own_files(obj)
+    record = report.read(files.report).get("bake")
+    if pc2.check(files.pc2, len(obj.data.vertices)) or not record:
+        return False
+    attach(obj, files.pc2, record)
+    return True
+
+
+def free(obj: bpy.types.Object) -> None:
+    """Remove the object's own bake, and the one before it, from the disk; another file's is only let go."""
+    files = own_files(obj)
+    for path in (*files.existing(), *files.previous.existing()):
+        try:
+            os.remove(path)
+        except OSError as error:
+            raise Refusal(
+                f'the cache "{path}" cannot be removed ({error.strerror}): close what uses it'
+            ) from error
+    detach(obj)
+
+
+def restore_previous(obj: bpy.types.Object) -> None:
+    """Swap the bake with the one before it."""
+    files = own_files(obj)
+    previous = files.previous
+    if not os.path.isfile(previous.pc2):
+        raise Refusal(f'"{obj.name}": there is no earlier bake to restore')
+    try:
+        for path, kept in zip(files, previous, strict=True):
+            _swap(path, kept)
+    except OSError as error:
+        raise cannot_write(files.pc2, error) from error
+    record = report.read(files.report).get("bake")
+    if not record:
+        raise Refusal(f'"{files.report}" is missing or damaged: bake again')
+    attach(obj, files.pc2, record)
+
+
+def has_previous(obj: bpy.types.Object) -> bool:
+    """Whether an earlier bake is kept."""
+    if not obj.boucle.uuid:
+        return False
+    path = os.path.join(own_folder(), f"{obj.boucle.uuid}.pc2")
+    return os.path.isfile(cache_paths.files_of(path).previous.pc2)
+
+
+def record_of(obj: bpy.types.Object) -> dict[str, Any]:
+    """What the bake that the object plays remembers; empty without one."""
+    try:
+        content = json.loads(obj.boucle.bake_record or "{}")
+    except ValueError:
+        return {}
+    return content if isinstance(content, dict) else {}
+
+
+def problem(obj: bpy.types.Object) -> str:
+    """Why the bake that the object plays cannot be played; empty if it can, or if there is none."""
+    path = played_path(obj)
+    if not path:
+        return ""
+    found = pc2.check(path, len(obj.data.vertices))
+    return f'"{obj.name}": {found}' if found else ""
+
+
+def drift_of(obj: bpy.types.Object, scene: bpy.types.Scene, in_full: bool) -> list[str]:
+    """What changed since the bake, in words; in_full compares groups and faces too, which takes longer."""
+    then = record_of(obj)
+    if not then:
+        return []
+    try:
+        description = settings.describe(obj, scene, with_groups=in_full)
+    except Refusal as refusal:
+        return [str(refusal)]
+    if in_full:
+        now = settings.record(obj, description)
+    else:
+        now = drift.record(description, len(obj.data.vertices), "")
+    return drift.differences(then, now)
+
+
+def is_foreign(obj: bpy.types.Object) -> bool:
+    """Whether the object plays another file's or another object's bake."""
+    path = played_path(obj)
+    own = os.path.join(own_folder(), f"{obj.boucle.uuid}.pc2")
+    return bool(path) and os.path.normcase(path) != os.path.normcase(os.path.normpath(own))
+
+
+def status(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
+    """The state of a bake in one sentence; empty without one."""
+    path = played_path(obj)
+    if not path:
+        return ""
+    trouble = problem(obj)
+    if trouble:
+        return trouble
+    header = pc2.read_header(path)
+    record = record_of(obj)
+    first = int(record.get("first", header.first_frame))
+    last = first + header.sample_count - 1
+    text = f"Baked: frames {first} to {last}, {size(os.path.getsize(path))}"
+    end = int(record.get("end", last))
+    if last < end:
+        text = f"Partly baked: frames {first} to {last} of {end}; Resume goes on"
+    changed = drift_of(obj, scene, in_full=False)
+    if changed:
+        text += f"; outdated, changed since: {', '.join(changed)}"
+    if is_foreign(obj):
+        text += "; the cache belongs to another file or object, Copy makes it this one's own"
+    return text
+
+
+def _swap(path: str, kept: str) -> None:
+    """Exchange two files, either of which may be missing."""
+    aside = f"{path}.swap"
+    if os.path.isfile(path):
+        os.replace(path, aside)
+    if os.path.isfile(kept):
+        os.replace(kept, path)
+    if os.path.isfile(aside):
+        os.replace(aside, kept)

@@ -1,0 +1,121 @@
+"""How a live frame is shown: written into the mesh, or through a temporary PC2."""
+
+from __future__ import annotations
+
+import os
+from typing import Protocol
+
+import bpy
+
+from ..core import cache_paths, pc2
+from ..core.live_frames import LiveFrames
+from ..core.refusal import Refusal
+from . import cache, mesh_arrays, rest, runtime, slot
+
+
+def may_write(obj: bpy.types.Object) -> bool:
+    """Whether a frame may stand in the mesh: nobody else shows it, and nothing moves it above the slot."""
+    mesh = obj.data
+    return (
+        mesh.library is None
+        and mesh.override_library is None
+        and mesh.users == 1
+        and mesh.shape_keys is None
+        and slot.find(obj) is not None
+        and not slot.above(obj)
+    )
+
+
+class Display(Protocol):
+    """A way of showing frames."""
+
+    def show(self, obj: bpy.types.Object, frames: LiveFrames, frame: int) -> None:
+        """Show the kept frame."""
+
+    def hide(self, obj: bpy.types.Object) -> None:
+        """Take the frame away, so that the file can be saved; `show` brings it back."""
+
+    def end(self, obj: bpy.types.Object) -> None:
+        """Take the frame away for good."""
+
+    def forget(self) -> None:
+        """The object is gone: tidy up."""
+
+
+class Direct:
+    """Frames in the mesh's `position`."""
+
+    def show(self, obj: bpy.types.Object, frames: LiveFrames, frame: int) -> None:
+        """Write the frame; the rest shape is kept before the first one."""
+        if not rest.is_displaced(obj.data):
+            if runtime.rendering:
+                return
+            rest.keep(obj.data)
+        mesh_arrays.write_positions(obj.data, frames.nearest(frame))
+
+    def hide(self, obj: bpy.types.Object) -> None:
+        """Put the rest shape back."""
+        rest.put_back(obj.data)
+
+    def end(self, obj: bpy.types.Object) -> None:
+        """Put the rest shape back."""
+        if not runtime.rendering:
+            rest.put_back(obj.data)
+
+    def forget(self) -> None:
+        """Nothing is left."""
+
+
+class TemporaryFile:
+    """Frames in a PC2 of this session, which the slot's Mesh Cache plays and scrubs by itself."""
+
+    def __init__(self, uid: int) -> None:
+        """The file is made with the first frame shown."""
+        self._path = cache_paths.live_file(runtime.session_folder(), uid)
+        self._writer: pc2.Writer | None = None
+
+    def show(self, obj: bpy.types.Object, frames: LiveFrames, _frame: int) -> None:
+        """Append what the file lacks and let Blender look at it again."""
+        modifier = slot.find(obj)
+        if modifier is None:
+            return
+        try:
+            is_new = self._append(obj, frames)
+        except Refusal as refusal:
+            runtime.messages[obj.session_uid] = str(refusal)
+            return
+        if modifier.cache.filepath != self._path:
+            modifier.cache.filepath = self._path
+            cache.point_modifier(modifier.cache, frames.first)
+            is_new = True
+        if is_new:
+            obj.update_tag()
+
+    def _append(self, obj: bpy.types.Object, frames: LiveFrames) -> bool:
+        kept = frames.all()
+        if self._writer is None:
+            self._writer = pc2.Writer.create(self._path, len(obj.data.vertices), frames.first)
+        missing = kept[self._writer.sample_count :]
+        for positions in missing:
+            self._writer.append(positions)
+        return bool(missing)
+
+    def hide(self, obj: bpy.types.Object) -> None:
+        """Name no temporary file."""
+        found = slot.find(obj)
+        if found is not None and cache_paths.is_live(found.cache.filepath):
+            found.cache.filepath = ""
+
+    def end(self, obj: bpy.types.Object) -> None:
+        """Name no temporary file, and remove it."""
+        self.hide(obj)
+        obj.update_tag()
+        self.forget()
+
+    def forget(self) -> None:
+        """Remove the file."""
+        if self._writer is not None:
+            self._writer.close()
+            self._writer = None
+        if os.path.isfile(self._path):
+            os.remove(self._path)

@@ -1,0 +1,283 @@
+"""Live mode: play steps each cloth, scrubbing shows the frames kept in memory.
+
+A session belongs to one cloth and lives until the user resets it or changes a setting, the faces or the stack above the
+slot. It holds no Blender data: the cloth is found again at every event by its `session_uid`.
+
+Where the mesh may be written (see `display.may_write`), frames stand in its `position` and the rest shape in `boucle_rest`. In
+every other case they go into a temporary PC2 that the slot's Mesh Cache plays.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+
+from .. import native
+from ..core import points
+from ..core.live_frames import Action, LiveFrames
+from ..core.points import Points
+from ..core.progress import size
+from ..core.refusal import sentence_of
+from . import cache, display, registry, rest, runtime, sampling, settings, simulation
+from . import slot as slots
+
+EDITING_MODES = frozenset({"EDIT", "SCULPT", "WEIGHT_PAINT"})
+"""Modes in which the artist works on the rest shape or on the pins."""
+
+
+@dataclass
+class Session:
+    """One cloth in motion."""
+
+    uid: int
+    solver: Any
+    """None after a fault: the kept frames can still be shown."""
+    frames: LiveFrames
+    is_pinned: bool
+    display: display.Display
+    basis: tuple[object, ...]
+    """What must not change while the session lives."""
+
+
+_sessions: dict[int, Session] = {}
+
+
+def session_of(obj: bpy.types.Object) -> Session | None:
+    """The live session of a cloth."""
+    return _sessions.get(obj.session_uid)
+
+
+def any_session() -> bool:
+    """Whether any cloth is live."""
+    return bool(_sessions)
+
+
+def on_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """Step or show every live cloth of the scene at its frame; sub-frames are left alone."""
+    if runtime.busy or scene.frame_subframe != 0.0 or not runtime.may_write_in_render():
+        return
+    for obj in registry.cloths_of(scene):
+        if _is_live(obj):
+            _come_to_frame(obj, scene, depsgraph)
+
+
+def _is_live(obj: bpy.types.Object) -> bool:
+    return obj.boucle.use_live and obj.mode not in EDITING_MODES and not cache.is_baked(obj)
+
+
+def _come_to_frame(
+    obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
+) -> None:
+    session = _valid_session(obj, scene)
+    frame = scene.frame_current
+    if session is None:
+        if frame not in (obj.boucle.frame_start, obj.boucle.frame_start + 1):
+            return
+        session = begin(obj, scene, depsgraph)
+        if session is None:
+            return
+    action = session.frames.action(frame, scene.frame_subframe, obj.boucle.frame_end)
+    if action is Action.STEP:
+        _step(session, obj, depsgraph)
+    elif action in (Action.WAIT, Action.FULL):
+        _explain(session, obj, action)
+    if action is not Action.IGNORE:
+        session.display.show(obj, session.frames, frame)
+
+
+def begin(
+    obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
+) -> Session | None:
+    """Start a session with the present pose as the rest pose; None, and a message, if it cannot be."""
+    runtime.messages.pop(obj.session_uid, None)
+    try:
+        session = _build(obj, scene, depsgraph)
+    except native.FAILURES as error:
+        _say(obj, sentence_of(error))
+        return None
+    _sessions[obj.session_uid] = session
+    return session
+
+
+def _build(
+    obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
+) -> Session:
+    if not runtime.rendering:
+        slots.ensure(obj)
+    description = settings.describe(obj, scene, with_groups=True)
+    is_direct = display.may_write(obj) and (not runtime.rendering or rest.is_displaced(obj.data))
+    local = rest.positions(obj.data) if is_direct else sampling.targets(obj, depsgraph)
+    matrix = sampling.object_matrix(obj, depsgraph)
+    sampling.inverse(obj, matrix)
+    solver = simulation.maker(obj, description, points.transform(local, matrix, "d"))()
+    limit = memory_limit()
+    shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
+    return Session(
+        uid=obj.session_uid,
+        solver=solver,
+        frames=LiveFrames(obj.boucle.frame_start, local, limit),
+        is_pinned=simulation.is_pinned(description),
+        display=shown,
+        basis=_basis(obj, scene),
+    )
+
+
+def memory_limit() -> int:
+    """Bytes that one cloth's live frames may take."""
+    addon = bpy.context.preferences.addons.get(__package__.rpartition(".")[0])
+    return addon.preferences.live_memory * 1_000_000 if addon else 4_000_000_000
+
+
+def _basis(obj: bpy.types.Object, scene: bpy.types.Scene) -> tuple[object, ...]:
+    mesh = obj.data
+    return (
+        mesh.session_uid,
+        len(mesh.vertices),
+        len(mesh.loops),
+        obj.boucle.frame_start,
+        settings.world(scene),
+        display.may_write(obj),
+    )
+
+
+def _valid_session(obj: bpy.types.Object, scene: bpy.types.Scene) -> Session | None:
+    """The session, dropped if what it stands on has changed; a left-over frame gives way to the rest shape."""
+    session = session_of(obj)
+    if session is not None and session.basis != _basis(obj, scene):
+        drop(obj)
+        session = None
+    if session is None and rest.is_displaced(obj.data) and not runtime.rendering:
+        rest.put_back(obj.data)
+    return session
+
+
+def _step(
+    session: Session,
+    obj: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+) -> None:
+    if session.solver is None:
+        return
+    try:
+        pose = sampling.pose(obj, depsgraph, session.is_pinned)
+        if pose.targets is not None:
+            session.solver.set_pin_targets(0, pose.targets)
+        session.solver.advance()
+        session.frames.add(_read(session, pose.to_object, len(obj.data.vertices)))
+    except native.FAILURES as error:
+        session.solver = None
+        _say(obj, f"{sentence_of(error)}; frames up to {session.frames.last} are kept")
+
+
+def _read(session: Session, to_object: points.Affine, vertex_count: int) -> Points:
+    if to_object == points.IDENTITY:
+        out = points.empty("f", 3 * vertex_count)
+        session.solver.read_positions(0, out)
+        return out
+    world = points.empty("d", 3 * vertex_count)
+    session.solver.read_positions(0, world)
+    return points.transform(world, to_object, "f")
+
+
+def _explain(session: Session, obj: bpy.types.Object, action: Action) -> None:
+    last = session.frames.last
+    if action is Action.FULL:
+        text = f"the live frames fill their memory at frame {last}: bake, or raise the limit in the add-on's preferences"
+    else:
+        text = (
+            f"frame {last + 1} was skipped: the cloth waits at frame {last}, play on from there "
+            "with Sync set to Play Every Frame"
+        )
+    runtime.messages[obj.session_uid] = f'"{obj.name}": {text}'
+
+
+def _say(obj: bpy.types.Object, text: str) -> None:
+    runtime.messages[obj.session_uid] = text
+    runtime.warn(text)
+
+
+def drop(obj: bpy.types.Object) -> None:
+    """End the live session of an object and give it its rest shape back."""
+    session = _sessions.pop(obj.session_uid, None)
+    runtime.messages.pop(obj.session_uid, None)
+    if obj.library is not None or obj.type != "MESH":
+        return
+    if session is not None:
+        session.display.end(obj)
+    if rest.is_displaced(obj.data) and not runtime.rendering:
+        rest.put_back(obj.data)
+
+
+def drop_all() -> None:
+    """End every session, when the add-on is switched off."""
+    for obj in registry.local_cloths():
+        drop(obj)
+    forget_all()
+
+
+def forget_all() -> None:
+    """Forget every session without touching Blender's data, which is about to be replaced."""
+    _sessions.clear()
+    runtime.messages.clear()
+
+
+def revalidate(scene: bpy.types.Scene) -> None:
+    """After undo or redo: keep the sessions whose cloths are as they were, and show their frame again."""
+    for uid in list(_sessions):
+        obj = registry.by_uid(uid)
+        if obj is None or not registry.is_cloth(obj):
+            _sessions.pop(uid).display.forget()
+        elif obj.mode in EDITING_MODES:
+            drop(obj)
+    for obj in registry.cloths_of(scene):
+        session = _valid_session(obj, scene)
+        if session is not None and _is_live(obj):
+            session.display.show(obj, session.frames, scene.frame_current)
+
+
+def leave_editing(depsgraph: bpy.types.Depsgraph) -> None:
+    """Give back the rest shape of cloths that the artist began to edit; called after each depsgraph update."""
+    if not depsgraph.id_type_updated("OBJECT") and not depsgraph.id_type_updated("MESH"):
+        return
+    for uid in list(_sessions):
+        obj = registry.by_uid(uid)
+        if obj is not None and obj.mode in EDITING_MODES:
+            drop(obj)
+
+
+def hide_all() -> None:
+    """Before the file is saved: rest shapes in place, no temporary file named; `show_all` undoes it."""
+    for obj in registry.local_cloths():
+        session = session_of(obj)
+        if session is not None:
+            session.display.hide(obj)
+        if obj.type == "MESH" and obj.mode not in EDITING_MODES:
+            rest.put_back(obj.data)
+
+
+def show_all(scene: bpy.types.Scene) -> None:
+    """After the file is saved: show the frame that was there before."""
+    for obj in registry.cloths_of(scene):
+        session = session_of(obj)
+        if session is not None and _is_live(obj):
+            session.display.show(obj, session.frames, scene.frame_current)
+
+
+def show_cached_frame(obj: bpy.types.Object, frame: int) -> None:
+    """Show a kept frame of a live cloth: all that scrubbing costs."""
+    session = _sessions[obj.session_uid]
+    session.display.show(obj, session.frames, frame)
+
+
+def status(obj: bpy.types.Object) -> str:
+    """The state of live mode in one sentence."""
+    message = runtime.messages.get(obj.session_uid)
+    if message:
+        return message
+    session = session_of(obj)
+    if session is None:
+        return f"Not baked: play from frame {obj.boucle.frame_start} to see it move"
+    frames = session.frames
+    return f"Live: frames {frames.first} to {frames.last} in memory, {size(frames.size_bytes)}"

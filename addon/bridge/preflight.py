@@ -1,0 +1,158 @@
+"""The check before a bake: every problem in one sentence, with the vertices that have it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import bmesh
+import bpy
+
+from .. import native
+from ..core import mesh_check, scene_json
+from ..core.mesh_check import Problem, Severity
+from ..core.refusal import Refusal
+from . import cache, mesh_arrays, rest, sampling, settings, slot
+
+SAMPLED_ONCE = (
+    "stretch", "shear", "bend", "damping", "damping_stretch", "damping_shear", "damping_bend",
+    "air_damping", "deformation_rate", "density", "mass_per_vertex", "wind_velocity",
+    "wind_coefficient", "wind_air_density",
+)  # fmt: skip
+"""Settings that may be animated in the file, of which the solver takes the first frame's value."""
+
+
+def problems(obj: bpy.types.Object, scene: bpy.types.Scene) -> list[Problem]:
+    """Everything that is wrong with a cloth, errors first."""
+    found = [*_errors(obj, scene), *_warnings(obj, scene)]
+    return sorted(found, key=lambda problem: problem.severity is Severity.WARNING)
+
+
+def refuse_errors(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
+    """Refuse a cloth that cannot be simulated, with the first reason."""
+    for problem in _errors(obj, scene):
+        if problem.severity is Severity.ERROR:
+            raise Refusal(problem.sentence)
+
+
+def select(obj: bpy.types.Object, vertices: set[int]) -> None:
+    """Select these vertices of a mesh and no others."""
+    mesh = obj.data
+    if mesh.is_editmode:
+        edited = bmesh.from_edit_mesh(mesh)
+        for vertex in edited.verts:
+            vertex.select_set(vertex.index in vertices)
+        edited.select_flush_mode()
+        bmesh.update_edit_mesh(mesh)
+        return
+    for parts, is_in in (
+        (mesh.vertices, lambda vertex: vertex.index in vertices),
+        (mesh.edges, lambda edge: set(edge.vertices) <= vertices),
+        (mesh.polygons, lambda face: set(face.vertices) <= vertices),
+    ):
+        parts.foreach_set("select", [is_in(part) for part in parts])
+    mesh.update()
+
+
+def _errors(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
+    mesh = obj.data
+    if native.problem():
+        yield _error(native.problem())
+    if mesh.is_editmode:
+        yield _error(f'"{obj.name}" is in Edit Mode: leave it first')
+        return
+    faces = mesh_arrays.topology(mesh)
+    for problem in mesh_check.check(
+        rest.positions(mesh), faces.starts, faces.corners, mesh_arrays.edges(mesh)
+    ):
+        yield problem._replace(sentence=f'"{obj.name}": {problem.sentence}')
+    try:
+        scene_json.describe(
+            obj.name, settings.values(obj), settings.world(scene), settings.groups(obj)
+        )
+        sampling.inverse(obj, mesh_arrays.world_matrix(obj))
+    except Refusal as refusal:
+        yield _error(str(refusal))
+    yield from _stack_errors(obj)
+
+
+def _stack_errors(obj: bpy.types.Object) -> Iterator[Problem]:
+    if slot.find(obj) is None:
+        yield _error(f'"{obj.name}": Boucle\'s modifiers are missing: press Disable and Enable')
+        return
+    if not slot.find(obj).target.show_viewport:
+        yield _error(
+            f'"{obj.name}": the modifier "{slot.find(obj).target.name}" is off in the viewport: '
+            "switch it on"
+        )
+    for modifier in slot.above(obj):
+        if modifier.type in slot.COUNT_CHANGING - {"NODES"} and modifier.show_viewport:
+            yield _error(
+                f'"{obj.name}": the modifier "{modifier.name}" stands above Boucle\'s and changes '
+                "the vertices: move it below"
+            )
+    if obj.hide_viewport or not obj.visible_get():
+        yield _error(
+            f'"{obj.name}" is hidden, so Blender does not evaluate it: show it and its collection '
+            "in the viewport"
+        )
+
+
+def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
+    group = obj.boucle.pin_group
+    if not group:
+        yield _warning(f'"{obj.name}": no Pin Group is set, so the cloth falls freely')
+    elif obj.vertex_groups.get(group) is not None:
+        held = set(mesh_arrays.group_vertices(obj, group, settings.PIN_THRESHOLD))
+        soft = [v for v in mesh_arrays.group_vertices(obj, group, 1e-6) if v not in held]
+        partly = [v for v in held if v not in set(mesh_arrays.group_vertices(obj, group, 1.0))]
+        if soft or partly:
+            yield Problem(
+                Severity.WARNING,
+                f'"{obj.name}": {len(soft) + len(partly)} vertices of "{group}" have a weight '
+                f"below 1: soft pins are not supported yet, from {settings.PIN_THRESHOLD} on a "
+                "vertex is held and below it is free",
+                [*soft, *partly],
+            )
+    animated = [name for name in SAMPLED_ONCE if _is_animated(obj, name)]
+    if animated:
+        yield _warning(
+            f'"{obj.name}": {", ".join(animated)} is animated: only its value at the start frame '
+            "counts yet"
+        )
+    if cache.problem(obj):
+        yield _warning(cache.problem(obj))
+    changed = cache.drift_of(obj, scene, in_full=True)
+    if changed:
+        yield _warning(
+            f'"{obj.name}": the bake is outdated, changed since: {", ".join(changed)}: bake again'
+        )
+
+
+def _is_animated(obj: bpy.types.Object, name: str) -> bool:
+    path = f"boucle.{name}"
+    data = obj.animation_data
+    if data is None:
+        return False
+    curves = [*data.drivers, *_curves_of(data.action)]
+    return any(curve.data_path == path for curve in curves)
+
+
+def _curves_of(action: bpy.types.Action | None) -> Iterator[bpy.types.FCurve]:
+    """All curves of an action: in one list up to Blender 4.5, in layers since 4.4."""
+    if action is None:
+        return
+    if not hasattr(action, "layers"):
+        yield from action.fcurves
+        return
+    for layer in action.layers:
+        for strip in layer.strips:
+            for bag in strip.channelbags:
+                yield from bag.fcurves
+
+
+def _error(sentence: str) -> Problem:
+    return Problem(Severity.ERROR, sentence)
+
+
+def _warning(sentence: str) -> Problem:
+    return Problem(Severity.WARNING, sentence)

@@ -1,0 +1,57 @@
+"""Which objects are Boucle cloths, found without a walk over all objects at every frame.
+
+Nothing here holds on to Blender data: a cloth is remembered by name and `session_uid`, and looked up again each time.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+_known: list[tuple[str, int]] = []
+_object_count = -1
+
+
+def is_cloth(obj: bpy.types.Object | None) -> bool:
+    """Whether an object is a Boucle cloth."""
+    return obj is not None and obj.type == "MESH" and obj.boucle.enabled
+
+
+def by_uid(uid: int) -> bpy.types.Object | None:
+    """The object with this `session_uid`, if it is still there."""
+    return next((obj for obj in bpy.data.objects if obj.session_uid == uid), None)
+
+
+def forget() -> None:
+    """Look at all objects again at the next question: after undo, load, enabling."""
+    global _object_count
+    _object_count = -1
+
+
+def all_cloths() -> list[bpy.types.Object]:
+    """Every Boucle cloth of the file."""
+    if _object_count == len(bpy.data.objects):
+        found = [bpy.data.objects.get(name) for name, _ in _known]
+        if all(
+            obj is not None and obj.session_uid == uid and is_cloth(obj)
+            for obj, (_, uid) in zip(found, _known, strict=True)
+        ):
+            return found
+    return _look()
+
+
+def local_cloths() -> list[bpy.types.Object]:
+    """Every Boucle cloth that this file owns: its own objects and its overrides of linked ones."""
+    return [obj for obj in all_cloths() if obj.library is None]
+
+
+def cloths_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """The local cloths of one scene."""
+    return [obj for obj in local_cloths() if scene.objects.get(obj.name) == obj]
+
+
+def _look() -> list[bpy.types.Object]:
+    global _object_count
+    found = [obj for obj in bpy.data.objects if is_cloth(obj)]
+    _known[:] = [(obj.name, obj.session_uid) for obj in found]
+    _object_count = len(bpy.data.objects)
+    return found

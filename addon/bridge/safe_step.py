@@ -1,0 +1,66 @@
+"""The largest stable time step of a cloth, in words; computed once per state of its settings."""
+
+from __future__ import annotations
+
+import bpy
+
+from .. import native
+from ..core import drift, points, scene_json
+from ..core.refusal import Refusal, sentence_of
+from . import live, mesh_arrays, rest, settings, simulation
+
+LARGEST = 20_000
+"""Vertices up to which a panel may build a solver while it draws (about 50 ms)."""
+
+_known: dict[int, tuple[str, str]] = {}
+
+
+def describe(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
+    """The safe time step and what it means for a frame."""
+    session = live.session_of(obj)
+    fps = settings.world(scene).fps
+    if session is not None and session.solver is not None:
+        return _words(session.solver, fps)
+    try:
+        description = settings.describe(obj, scene, with_groups=False)
+    except Refusal as refusal:
+        return str(refusal)
+    key = _key(obj, description)
+    known = _known.get(obj.session_uid)
+    if known is None or known[0] != key:
+        known = (key, _compute(obj, description, fps))
+        _known[obj.session_uid] = known
+    return known[1]
+
+
+def forget() -> None:
+    """Compute anew at the next question."""
+    _known.clear()
+
+
+def _compute(obj: bpy.types.Object, description: dict, fps: float) -> str:
+    if len(obj.data.vertices) > LARGEST or obj.data.is_editmode:
+        return "Safe time step: shown after the first simulated frame"
+    matrix = mesh_arrays.world_matrix(obj)
+    # A step beyond the bound is refused by the solver, and here the bound is what is asked for.
+    description["solver"]["allow_unstable"] = True
+    try:
+        world = points.transform(rest.positions(obj.data), matrix, "d")
+        return _words(simulation.maker(obj, description, world)(), fps)
+    except native.FAILURES as error:
+        return sentence_of(error)
+
+
+def _words(solver: object, fps: float) -> str:
+    step = solver.safe_time_step
+    if step <= 0.0:
+        return "Safe time step: none with this integrator and damping"
+    return (
+        f"Safe time step: {1000.0 * step:.3g} ms, {solver.substeps} substeps a frame at {fps:g} fps"
+    )
+
+
+def _key(obj: bpy.types.Object, description: dict) -> str:
+    mesh = obj.data
+    text = scene_json.encode(description) + repr(tuple(map(tuple, obj.matrix_world)))
+    return f"{drift.digest(text.encode())} {len(mesh.vertices)} {len(mesh.loops)}"

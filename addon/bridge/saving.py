@@ -1,0 +1,139 @@
+"""What happens to caches when the blend file is saved, loaded or saved under another name."""
+
+from __future__ import annotations
+
+import os
+import shutil
+
+import bpy
+
+from ..core import cache_paths
+from ..core.cache_paths import CacheFiles
+from ..core.refusal import Refusal, cannot_write
+from . import cache, live, registry, rest, runtime, slot
+
+
+def before_save(path: str) -> None:
+    """Put rest shapes in place, and bring caches of the unsaved session beside the file."""
+    live.hide_all()
+    cache.ensure_identity()
+    if path:
+        _bring_along(path)
+
+
+def after_save(scene: bpy.types.Scene) -> None:
+    """Show live frames again. A file saved as a copy leaves the session unsaved: name its caches in full."""
+    for obj in registry.local_cloths():
+        found = slot.find(obj)
+        if found is not None and found.cache.filepath.startswith("//"):
+            _name_in_full_if_lost(obj, found.cache)
+    live.show_all(scene)
+
+
+def after_load() -> None:
+    """Tidy up what a crash or an automatic save left: frames in meshes, temporary files, shared identities."""
+    registry.forget()
+    for obj in registry.local_cloths():
+        rest.put_back(obj.data)
+        found = slot.find(obj)
+        if found is not None and cache_paths.is_live(found.cache.filepath):
+            found.cache.filepath = ""
+    cache.ensure_identity()
+
+
+def adopt(obj: bpy.types.Object) -> None:
+    """Copy the bake that the object plays to its own place, and play that.
+
+    Raises:
+        Refusal: There is nothing to copy, or it cannot be written.
+    """
+    played = cache.played_path(obj)
+    trouble = cache.problem(obj)
+    if not played or trouble:
+        raise Refusal(trouble or f'"{obj.name}" plays no bake that could be copied')
+    files = cache.own_files(obj)
+    record = cache.record_of(obj)
+    if not record:
+        raise Refusal(f'"{obj.name}": nothing is known of its bake: bake again')
+    if cache.is_foreign(obj):
+        _copy(cache_paths.files_of(played), files)
+    cache.attach(obj, files.pc2, record)
+
+
+def warn_of_missing() -> None:
+    """Before a render: say which caches Blender will not play."""
+    for obj in registry.all_cloths():
+        trouble = cache.problem(obj)
+        if trouble:
+            runtime.warn(f"{trouble} (its rest shape is rendered)")
+
+
+def warn_of_live(scene: bpy.types.Scene) -> None:
+    """When a render begins: say what live frames cannot do."""
+    unbaked = [obj for obj in registry.cloths_of(scene) if not cache.is_baked(obj)]
+    if not unbaked:
+        return
+    names = ", ".join(f'"{obj.name}"' for obj in unbaked)
+    if not runtime.may_write_in_render():
+        runtime.warn(
+            f"{names} is not baked and does not move in this render: bake, or switch on Render > "
+            "Lock Interface"
+        )
+    elif scene.render.use_motion_blur:
+        runtime.warn(f"{names} is not baked and has no deformation blur in this render: bake")
+
+
+def _bring_along(blend_path: str) -> None:
+    session_folder = cache_paths.own_folder("", runtime.session_folder())
+    folder = cache_paths.own_folder(blend_path, "")
+    for obj in registry.local_cloths():
+        played = cache.played_path(obj)
+        if not played or not cache_paths.is_within(played, session_folder):
+            continue
+        source = cache_paths.files_of(played)
+        target = cache_paths.files_of(os.path.join(folder, os.path.basename(played)))
+        try:
+            _move(source, target)
+            _move(source.previous, target.previous)
+        except Refusal as refusal:
+            runtime.warn(str(refusal))
+            continue
+        slot.find(obj).cache.filepath = cache_paths.relative_to_blend(target.pc2, blend_path)
+
+
+def _name_in_full_if_lost(obj: bpy.types.Object, modifier: bpy.types.MeshCacheModifier) -> None:
+    if bpy.data.filepath or obj.override_library is not None:
+        return
+    for folder in _saved_folders:
+        path = os.path.normpath(os.path.join(folder, modifier.filepath[2:]))
+        if os.path.isfile(path):
+            modifier.filepath = path
+            return
+
+
+_saved_folders: list[str] = []
+"""Folders of the last saves: there `//` pointed while the file was written."""
+
+
+def remember_folder(path: str) -> None:
+    """Note where a file is being saved."""
+    if path:
+        _saved_folders[:] = [os.path.dirname(path), *_saved_folders[:3]]
+
+
+def _move(source: CacheFiles, target: CacheFiles) -> None:
+    _each(source, target, shutil.move)
+
+
+def _copy(source: CacheFiles, target: CacheFiles) -> None:
+    _each(source, target, shutil.copyfile)
+
+
+def _each(source: CacheFiles, target: CacheFiles, act: object) -> None:
+    try:
+        os.makedirs(os.path.dirname(target.pc2), exist_ok=True)
+        for here, there in zip(source, target, strict=True):
+            if os.path.isfile(here):
+                act(here, there)
+    except OSError as error:
+        raise cannot_write(target.pc2, error) from error

@@ -1,0 +1,69 @@
+"""The settings of a cloth and its scene as plain values."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import bpy
+
+from ..core import drift, scene_json
+from ..core.refusal import Refusal
+from ..core.scene_json import Groups, World
+from . import mesh_arrays
+
+PIN_THRESHOLD = 0.5
+"""Soft pins are not supported yet: from this weight on a vertex is held, below it is free."""
+
+
+def values(obj: bpy.types.Object) -> dict[str, Any]:
+    """Every setting by its name; vectors as tuples."""
+    settings = obj.boucle
+    out: dict[str, Any] = {}
+    for prop in settings.bl_rna.properties:
+        if prop.identifier in {"rna_type", "name"} or prop.is_readonly:
+            continue
+        value = getattr(settings, prop.identifier)
+        out[prop.identifier] = tuple(value) if getattr(prop, "is_array", False) else value
+    return out
+
+
+def world(scene: bpy.types.Scene) -> World:
+    """Gravity (m/s²) and frames a second of a scene."""
+    gravity = tuple(scene.gravity) if scene.use_gravity else (0.0, 0.0, 0.0)
+    return World(gravity, scene.render.fps / scene.render.fps_base)
+
+
+def groups(obj: bpy.types.Object) -> Groups:
+    """The pinned vertices and those in the wind.
+
+    Raises:
+        Refusal: A group is named that the object does not have.
+    """
+    settings = obj.boucle
+    pins = _vertices(obj, "Pin Group", settings.pin_group, PIN_THRESHOLD)
+    wind = _vertices(obj, "Wind Group", settings.wind_group, 1e-6) if settings.use_wind else None
+    return Groups(pins or [], wind)
+
+
+def describe(obj: bpy.types.Object, scene: bpy.types.Scene, with_groups: bool) -> dict[str, Any]:
+    """The scene description of one cloth; groups take long to read and may be left out."""
+    found = groups(obj) if with_groups else Groups([], None)
+    return scene_json.describe(obj.name, values(obj), world(scene), found)
+
+
+def record(obj: bpy.types.Object, description: dict[str, Any]) -> dict[str, Any]:
+    """What a bake with this description remembers of its cloth."""
+    mesh = obj.data
+    return drift.record(description, len(mesh.vertices), mesh_arrays.topology(mesh).digest())
+
+
+def _vertices(obj: bpy.types.Object, label: str, name: str, threshold: float) -> list[int] | None:
+    if not name:
+        return None
+    if obj.vertex_groups.get(name) is None:
+        known = ", ".join(f'"{group.name}"' for group in obj.vertex_groups) or "none"
+        raise Refusal(
+            f'"{obj.name}": {label} "{name}" is not a vertex group of the object '
+            f"(it has {known}): choose one of them or clear the field"
+        )
+    return list(mesh_arrays.group_vertices(obj, name, threshold))

@@ -1,0 +1,96 @@
+"""The slot: the two modifiers that stand where the simulation belongs in a cloth's stack.
+
+First the node group that stores positions as `boucle_target`, then the Mesh Cache that plays a result. What is above (armature,
+hooks, lattices) moves the pins and the rest shape; what is below (subdivision, thickness) works on the simulated cloth.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import bpy
+
+from .._identifiers import CACHE_MODIFIER, TARGET_MODIFIER
+from . import target_group
+
+COUNT_CHANGING = frozenset({
+    "ARRAY", "BEVEL", "BOOLEAN", "BUILD", "DECIMATE", "EDGE_SPLIT", "EXPLODE", "MASK",
+    "MESH_SEQUENCE_CACHE", "MIRROR", "MULTIRES", "NODES", "OCEAN", "PARTICLE_INSTANCE", "REMESH",
+    "SCREW", "SKIN", "SOLIDIFY", "SUBSURF", "TRIANGULATE", "VOLUME_TO_MESH", "WELD", "WIREFRAME",
+})  # fmt: skip
+"""Modifier types that may give a mesh other vertices: the slot stands above the first of them."""
+
+
+class Slot(NamedTuple):
+    """The two modifiers."""
+
+    target: bpy.types.NodesModifier
+    cache: bpy.types.MeshCacheModifier
+
+
+def find(obj: bpy.types.Object) -> Slot | None:
+    """The slot of an object, if it is whole."""
+    target = next(
+        (m for m in obj.modifiers if m.type == "NODES" and target_group.is_ours(m.node_group)),
+        None,
+    )
+    caches = [m for m in obj.modifiers if m.type == "MESH_CACHE"]
+    cache = next((m for m in caches if m.name.startswith(CACHE_MODIFIER)), None)
+    if target is None or cache is None:
+        return None
+    return Slot(target, cache)
+
+
+def ensure(obj: bpy.types.Object) -> Slot:
+    """The slot, completed if a part of it is missing."""
+    found = find(obj)
+    if found is not None:
+        return found
+    remove(obj)
+    place = _place(obj)
+    target = obj.modifiers.new(TARGET_MODIFIER, "NODES")
+    target.node_group = target_group.ensure()
+    target.show_expanded = False
+    cache = obj.modifiers.new(CACHE_MODIFIER, "MESH_CACHE")
+    cache.cache_format = "PC2"
+    cache.time_mode = "FRAME"
+    cache.show_expanded = False
+    cache.show_in_editmode = False
+    for offset, name in enumerate((target.name, cache.name)):
+        obj.modifiers.move(obj.modifiers.find(name), place + offset)
+    return find(obj)
+
+
+def remove(obj: bpy.types.Object) -> None:
+    """Take the slot, or what is left of it, out of the stack."""
+    for modifier in list(obj.modifiers):
+        is_target = modifier.type == "NODES" and target_group.is_ours(modifier.node_group)
+        is_cache = modifier.type == "MESH_CACHE" and modifier.name.startswith(CACHE_MODIFIER)
+        if is_target or is_cache:
+            obj.modifiers.remove(modifier)
+
+
+def above(obj: bpy.types.Object) -> list[bpy.types.Modifier]:
+    """The modifiers above the slot."""
+    found = find(obj)
+    if found is None:
+        return []
+    names = [modifier.name for modifier in obj.modifiers]
+    return list(obj.modifiers)[: names.index(found.target.name)]
+
+
+def below(obj: bpy.types.Object) -> list[bpy.types.Modifier]:
+    """The modifiers below the slot."""
+    found = find(obj)
+    if found is None:
+        return []
+    names = [modifier.name for modifier in obj.modifiers]
+    return list(obj.modifiers)[names.index(found.cache.name) + 1 :]
+
+
+def _place(obj: bpy.types.Object) -> int:
+    """Above the first modifier that may change the vertices; at the end if there is none."""
+    for index, modifier in enumerate(obj.modifiers):
+        if modifier.type in COUNT_CHANGING:
+            return index
+    return len(obj.modifiers)

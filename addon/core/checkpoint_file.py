@@ -1,0 +1,61 @@
+"""The checkpoint beside a PC2: from it a stopped bake goes on, bit-equal to one that never stopped.
+
+Layout: a magic line, one line of JSON (frame, sample count, digest of the scene, length), then the solver's own bytes, which
+carry their own checksum.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import NamedTuple
+
+from . import whole_file
+from .refusal import Refusal
+
+_MAGIC = b"BOUCLE CHECKPOINT 1\n"
+
+
+class Checkpoint(NamedTuple):
+    """Where a bake stopped."""
+
+    frame: int
+    sample_count: int
+    digest: str
+    state: bytes
+
+
+def write(path: str, checkpoint: Checkpoint) -> None:
+    """Replace the checkpoint file."""
+    head = {
+        "frame": checkpoint.frame,
+        "samples": checkpoint.sample_count,
+        "digest": checkpoint.digest,
+        "length": len(checkpoint.state),
+    }
+    whole_file.replace(path, _MAGIC + json.dumps(head).encode() + b"\n" + checkpoint.state)
+
+
+def read(path: str) -> Checkpoint | None:
+    """The checkpoint; None if there is none.
+
+    Raises:
+        Refusal: The file is damaged.
+    """
+    try:
+        with open(path, "rb") as file:
+            magic = file.readline(len(_MAGIC))
+            head_line = file.readline(4096)
+            state = file.read()
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise Refusal(f'the checkpoint "{path}" cannot be read ({error.strerror})') from error
+    try:
+        if magic != _MAGIC:
+            raise ValueError(magic)
+        head = json.loads(head_line)
+        if head["length"] != len(state):
+            raise ValueError(head)
+        return Checkpoint(int(head["frame"]), int(head["samples"]), str(head["digest"]), state)
+    except (ValueError, KeyError, TypeError) as error:
+        raise Refusal(f'the checkpoint "{path}" is damaged: bake from the start') from error

@@ -1,0 +1,81 @@
+"""Drift: whether a cache still belongs to the cloth it was baked from, in words."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from .points import Points
+
+_WORDS = {
+    "frames": "frame range",
+    "stretch": "stretch stiffness",
+    "shear": "shear stiffness",
+    "bend": "bend stiffness",
+    "mass_per_vertex": "mass per vertex",
+    "name": "",
+}
+
+
+def digest(*parts: Points | bytes) -> str:
+    """A 64-bit digest of buffers, as 16 hexadecimal digits."""
+    state = hashlib.blake2b(digest_size=8)
+    for part in parts:
+        data = memoryview(part).cast("B")
+        state.update(len(data).to_bytes(8, "little"))
+        state.update(data)
+    return state.hexdigest()
+
+
+def record(scene: Mapping[str, Any], vertices: int, topology: str) -> dict[str, Any]:
+    """What a bake remembers of its cloth: settings one by one, long lists as a digest."""
+    settings: dict[str, Any] = {}
+    _flatten(scene, "", settings)
+    settings.pop("cloth.name", None)
+    return {"settings": settings, "vertices": vertices, "topology": topology}
+
+
+def whole_digest(of: Mapping[str, Any]) -> str:
+    """A digest of a record, by which a checkpoint is bound to its cloth."""
+    return digest(json.dumps(of, sort_keys=True).encode())
+
+
+def differences(baked: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
+    """What changed since the bake, in words; lists that `now` leaves out are not compared."""
+    words = []
+    if baked.get("vertices") != now["vertices"]:
+        words.append(f"vertex count ({baked.get('vertices')} baked, {now['vertices']} now)")
+    elif now["topology"] and baked.get("topology") != now["topology"]:
+        words.append("topology")
+    then = baked.get("settings", {})
+    for key in sorted(set(then) | set(now["settings"])):
+        if then.get(key) != now["settings"].get(key) and not _is_left_out(key, now["settings"]):
+            words.append(_words(key))
+    return list(dict.fromkeys(words))
+
+
+def _is_left_out(key: str, settings: Mapping[str, Any]) -> bool:
+    """A list of vertices takes long to gather: the panel leaves it out, the check does not."""
+    return key.endswith("vertices") and not any(name.endswith("vertices") for name in settings)
+
+
+def _words(key: str) -> str:
+    parts = [part for part in key.split(".") if not part.isdigit()]
+    if parts[-1] == "vertices":
+        return "pinned vertices" if "pins" in parts else "vertices in the wind"
+    return _WORDS.get(parts[-1]) or parts[-1].replace("_", " ")
+
+
+def _flatten(value: Any, path: str, out: dict[str, Any]) -> None:
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            _flatten(inner, f"{path}.{key}" if path else str(key), out)
+    elif isinstance(value, list) and value and isinstance(value[0], dict):
+        for inner in value:
+            _flatten(inner, path, out)
+    elif isinstance(value, list) and path.endswith("vertices"):
+        out[path] = digest(json.dumps(value).encode())
+    else:
+        out[path] = value

@@ -1,0 +1,127 @@
+"""What is wrong with a mesh that is to be a cloth: every problem with the vertices that have it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from enum import Enum
+from typing import NamedTuple
+
+
+class Severity(Enum):
+    """How much a problem matters."""
+
+    ERROR = "the cloth cannot be simulated"
+    WARNING = "the cloth can be simulated, but look at this"
+
+
+class Problem(NamedTuple):
+    """One problem: a sentence with its cure, and the vertices to select."""
+
+    severity: Severity
+    sentence: str
+    vertices: Sequence[int] = ()
+
+
+RELATIVE_AREA = 1e-10
+"""A face below this part of its longest edge squared counts as flat: float32 positions carry no smaller area."""
+
+
+def check(
+    positions: Sequence[float], starts: Sequence[int], corners: Sequence[int], ends: Sequence[int]
+) -> list[Problem]:
+    """The problems of a mesh.
+
+    Args:
+        positions: x, y, z of each vertex (m), flat.
+        starts: First corner of each face.
+        corners: Vertex of each corner.
+        ends: The two vertices of each edge, flat.
+    """
+    count = len(positions) // 3
+    if count == 0 or len(starts) == 0:
+        return [_error("the mesh has no faces: give it at least one face", ())]
+    values = [float(value) for value in positions]
+    broken = [v for v in range(count) if not all(map(math.isfinite, values[3 * v : 3 * v + 3]))]
+    if broken:
+        return [_counted(broken, "vertex", "with a position that is no number", "delete or move")]
+    problems = [
+        _counted(_loose(count, corners), "vertex", "that no face uses", "delete"),
+        _counted(_short_edges(values, ends), "vertex", "on edges of no length", "merge"),
+        _counted(_flat_faces(values, starts, corners), "vertex", "on faces of no area", "dissolve"),
+    ]
+    found = [problem for problem in problems if problem is not None]
+    doubles = _doubles(values)
+    if doubles and not found:
+        sentence = _sentence(doubles, "vertex", "lying on another one", "merge them by distance")
+        found.append(Problem(Severity.WARNING, sentence, doubles))
+    return found
+
+
+def _error(sentence: str, vertices: Sequence[int]) -> Problem:
+    return Problem(Severity.ERROR, sentence, vertices)
+
+
+def _counted(vertices: Sequence[int], noun: str, what: str, cure: str) -> Problem | None:
+    if not vertices:
+        return None
+    return _error(_sentence(vertices, noun, what, f"{cure} them"), vertices)
+
+
+def _sentence(vertices: Sequence[int], noun: str, what: str, cure: str) -> str:
+    numbers = ", ".join(str(vertex) for vertex in vertices[:5])
+    more = ", ..." if len(vertices) > 5 else ""
+    plural = {"vertex": "vertices"}[noun] if len(vertices) != 1 else noun
+    return f"{len(vertices)} {plural} {what} ({numbers}{more}): {cure}"
+
+
+def _loose(count: int, corners: Sequence[int]) -> list[int]:
+    used = bytearray(count)
+    for vertex in corners:
+        used[vertex] = 1
+    return [vertex for vertex in range(count) if not used[vertex]]
+
+
+def _short_edges(values: list[float], ends: Sequence[int]) -> list[int]:
+    found: set[int] = set()
+    for k in range(0, len(ends), 2):
+        i, j = int(ends[k]), int(ends[k + 1])
+        if values[3 * i : 3 * i + 3] == values[3 * j : 3 * j + 3]:
+            found |= {i, j}
+    return sorted(found)
+
+
+def _flat_faces(values: list[float], starts: Sequence[int], corners: Sequence[int]) -> list[int]:
+    found: set[int] = set()
+    for face, start in enumerate(starts):
+        end = int(starts[face + 1]) if face + 1 < len(starts) else len(corners)
+        vertices = [int(corners[k]) for k in range(int(start), end)]
+        if _is_flat([values[3 * v : 3 * v + 3] for v in vertices]):
+            found.update(vertices)
+    return sorted(found)
+
+
+def _is_flat(ring: list[list[float]]) -> bool:
+    x = y = z = longest_squared = 0.0
+    ox, oy, oz = ring[0]
+    px, py, pz = (a - b for a, b in zip(ring[-1], ring[0], strict=True))
+    for point in ring:
+        qx, qy, qz = point[0] - ox, point[1] - oy, point[2] - oz
+        x += py * qz - pz * qy
+        y += pz * qx - px * qz
+        z += px * qy - py * qx
+        length = (qx - px) ** 2 + (qy - py) ** 2 + (qz - pz) ** 2
+        longest_squared = max(longest_squared, length)
+        px, py, pz = qx, qy, qz
+    return 0.5 * math.sqrt(x * x + y * y + z * z) <= RELATIVE_AREA * longest_squared
+
+
+def _doubles(values: list[float]) -> list[int]:
+    seen: dict[tuple[float, ...], int] = {}
+    found: set[int] = set()
+    for vertex in range(len(values) // 3):
+        place = tuple(values[3 * vertex : 3 * vertex + 3])
+        other = seen.setdefault(place, vertex)
+        if other != vertex:
+            found |= {other, vertex}
+    return sorted(found)

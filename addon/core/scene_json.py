@@ -1,0 +1,115 @@
+"""The settings of a cloth in Blender as a scene description: the keys and words of SCENE.toml."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from .refusal import Refusal
+
+Values = Mapping[str, Any]
+"""Property names of `object.boucle` and their values."""
+
+
+class World(NamedTuple):
+    """What a scene gives to its cloths: gravity (m/s²) and frames a second."""
+
+    gravity: tuple[float, float, float]
+    fps: float
+
+
+class Groups(NamedTuple):
+    """Vertices picked by vertex groups; wind None blows everywhere."""
+
+    pins: Sequence[int]
+    wind: Sequence[int] | None
+
+
+def decimal(value: float) -> float:
+    """A float32 property as the decimal that the user typed: 0.1, not 0.10000000149011612."""
+    return float(f"{value:.7g}")
+
+
+def describe(name: str, values: Values, world: World, groups: Groups) -> dict[str, Any]:
+    """The scene of one cloth, its mesh apart."""
+    frames = [int(values["frame_start"]), int(values["frame_end"])]
+    if frames[1] < frames[0]:
+        raise Refusal(
+            f'"{name}": the end frame is {frames[1]}, before the start frame {frames[0]}: '
+            "raise Frame End"
+        )
+    scene: dict[str, Any] = {
+        "scene": {
+            "frames": frames,
+            "fps": world.fps,
+            "gravity": [decimal(value) for value in world.gravity],
+        },
+        "cloth": [_cloth(name, values, groups.pins)],
+        "solver": _solver(name, values),
+    }
+    force = _wind(values, groups.wind)
+    if force:
+        scene["force"] = [force]
+    return scene
+
+
+def encode(scene: Mapping[str, Any]) -> str:
+    """The scene as JSON."""
+    return json.dumps(scene, allow_nan=False)
+
+
+def _cloth(name: str, values: Values, pins: Sequence[int]) -> dict[str, Any]:
+    cloth: dict[str, Any] = {"name": name, "model": "springs", "springs": _springs(values)}
+    if values["mass_mode"] == "density":
+        cloth["density"] = decimal(values["density"])
+    else:
+        cloth["mass_per_vertex"] = decimal(values["mass_per_vertex"])
+    if pins:
+        cloth["pins"] = {"vertices": list(pins)}
+    return cloth
+
+
+def _springs(values: Values) -> dict[str, Any]:
+    springs = {
+        key: decimal(values[key])
+        for key in ("stretch", "shear", "bend", "air_damping", "deformation_rate")
+    }
+    if values["damping_per_kind"]:
+        for key in ("damping_stretch", "damping_shear", "damping_bend"):
+            springs[key] = decimal(values[key])
+    else:
+        springs["damping"] = decimal(values["damping"])
+    return {**springs, "damping_law": values["damping_law"], "limiter": values["limiter"]}
+
+
+def _solver(name: str, values: Values) -> dict[str, Any]:
+    solver: dict[str, Any] = {
+        "integrator": values["integrator"],
+        "allow_unstable": bool(values["allow_unstable"]),
+    }
+    substeps, time_step = int(values["substeps"]), decimal(values["time_step"])
+    if substeps and time_step:
+        raise Refusal(
+            f'"{name}": Substeps is {substeps} and Time Step is {time_step} s: set one of them '
+            "to 0, or both for automatic steps"
+        )
+    if time_step:
+        solver["time_step"] = time_step
+    else:
+        solver["substeps"] = substeps or "auto"
+    return solver
+
+
+def _wind(values: Values, vertices: Sequence[int] | None) -> dict[str, Any] | None:
+    velocity = [decimal(value) for value in values["wind_velocity"]]
+    if not values["use_wind"] or vertices == []:
+        return None
+    wind: dict[str, Any] = {"kind": "wind", "velocity": velocity}
+    if values["wind_law"] == "vertex":
+        wind["coefficient"] = decimal(values["wind_coefficient"])
+    else:
+        wind["air_density"] = decimal(values["wind_air_density"])
+    if vertices is not None:
+        wind["region"] = {"vertices": list(vertices)}
+    return wind

@@ -1,0 +1,1 @@
+"""What the user can do: each operator checks, calls the bridge and reports."""

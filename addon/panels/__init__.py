@@ -1,0 +1,1 @@
+"""What the user sees in the Physics tab; panels only lay out."""

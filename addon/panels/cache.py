@@ -1,0 +1,43 @@
+"""Frame range, bake and what became of it."""
+
+from __future__ import annotations
+
+from bpy.types import Context, Panel
+
+from .._identifiers import Operators, Panels
+from .cloth import PhysicsPanel
+
+
+class BOUCLE_PT_cache(PhysicsPanel, Panel):
+    """The result, in memory or on disk"""
+
+    bl_idname = Panels.CACHE
+    bl_parent_id = Panels.CLOTH
+    bl_label = "Cache"
+
+    def draw(self, context: Context) -> None:
+        """Lay out."""
+        settings = context.object.boucle
+        column = self.column()
+        column.prop(settings, "frame_start")
+        column.prop(settings, "frame_end")
+        column.prop(settings, "use_live")
+        layout = self.layout
+        layout.operator(Operators.BAKE).resume = False
+        row = layout.row(align=True)
+        row.operator(Operators.BAKE, text="Resume").resume = True
+        row.operator(Operators.BAKE_ALL).resume = False
+        row = layout.row(align=True)
+        if settings.is_baked:
+            row.operator(Operators.FREE_BAKE)
+        else:
+            row.operator(Operators.RESET)
+        if settings.has_previous:
+            row.operator(Operators.RESTORE_BAKE)
+        if settings.is_foreign:
+            layout.operator(Operators.ADOPT_BAKE)
+        for line in settings.status.split("; "):
+            layout.label(text=line)
+
+
+CLASSES = (BOUCLE_PT_cache,)

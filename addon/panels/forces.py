@@ -1,0 +1,34 @@
+"""Wind."""
+
+from __future__ import annotations
+
+from bpy.types import Context, Panel
+
+from .._identifiers import Panels
+from .cloth import PhysicsPanel
+
+
+class BOUCLE_PT_forces(PhysicsPanel, Panel):
+    """Wind"""
+
+    bl_idname = Panels.FORCES
+    bl_parent_id = Panels.CLOTH
+    bl_label = "Forces"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Context) -> None:
+        """Lay out."""
+        obj = context.object
+        settings = obj.boucle
+        column = self.column()
+        column.prop(settings, "use_wind")
+        wind = column.column()
+        wind.active = settings.use_wind
+        wind.prop(settings, "wind_velocity")
+        wind.prop(settings, "wind_law")
+        per_vertex = settings.wind_law == "vertex"
+        wind.prop(settings, "wind_coefficient" if per_vertex else "wind_air_density")
+        wind.prop_search(settings, "wind_group", obj, "vertex_groups")
+
+
+CLASSES = (BOUCLE_PT_forces,)

@@ -1,0 +1,63 @@
+"""Stiffness, damping and deformation."""
+
+from __future__ import annotations
+
+from bpy.types import Context, Panel
+
+from .._identifiers import Panels
+from .cloth import PhysicsPanel
+
+
+class BOUCLE_PT_springs(PhysicsPanel, Panel):
+    """Stiffness"""
+
+    bl_idname = Panels.SPRINGS
+    bl_parent_id = Panels.CLOTH
+    bl_label = "Springs"
+
+    def draw(self, context: Context) -> None:
+        """Lay out."""
+        column = self.column()
+        for name in ("stretch", "shear", "bend"):
+            column.prop(context.object.boucle, name)
+
+
+class BOUCLE_PT_damping(PhysicsPanel, Panel):
+    """Damping"""
+
+    bl_idname = Panels.DAMPING
+    bl_parent_id = Panels.SPRINGS
+    bl_label = "Damping"
+
+    def draw(self, context: Context) -> None:
+        """Lay out."""
+        settings = context.object.boucle
+        column = self.column()
+        column.prop(settings, "damping_per_kind")
+        if settings.damping_per_kind:
+            for name in ("damping_stretch", "damping_shear", "damping_bend"):
+                column.prop(settings, name)
+        else:
+            column.prop(settings, "damping")
+        column.prop(settings, "damping_law")
+        column.prop(settings, "air_damping")
+
+
+class BOUCLE_PT_deformation(PhysicsPanel, Panel):
+    """Deformation"""
+
+    bl_idname = Panels.DEFORMATION
+    bl_parent_id = Panels.SPRINGS
+    bl_label = "Deformation"
+
+    def draw(self, context: Context) -> None:
+        """Lay out."""
+        settings = context.object.boucle
+        column = self.column()
+        column.prop(settings, "limiter")
+        rate = column.column()
+        rate.active = settings.limiter != "none"
+        rate.prop(settings, "deformation_rate")
+
+
+CLASSES = (BOUCLE_PT_springs, BOUCLE_PT_damping, BOUCLE_PT_deformation)

@@ -1,0 +1,1 @@
+"""The settings of a cloth: `object.boucle`, with the scene file's words."""

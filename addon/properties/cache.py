@@ -1,0 +1,86 @@
+"""Frame range, live mode and the bake."""
+
+from bpy.props import BoolProperty, IntProperty, StringProperty
+
+from .changes import FIXED, OVERRIDABLE, changed
+
+_HIDDEN = {"HIDDEN"}
+
+
+def _read_status(settings: object) -> str:
+    import bpy
+
+    from ..bridge import cache, live
+
+    obj = settings.id_data
+    return cache.status(obj, bpy.context.scene) or live.status(obj)
+
+
+def _read_is_baked(settings: object) -> bool:
+    from ..bridge import cache
+
+    return cache.is_baked(settings.id_data)
+
+
+def _read_is_foreign(settings: object) -> bool:
+    from ..bridge import cache
+
+    return cache.is_foreign(settings.id_data)
+
+
+def _read_has_previous(settings: object) -> bool:
+    from ..bridge import cache
+
+    return cache.has_previous(settings.id_data)
+
+
+class CacheProperties:
+    """Settings of what is simulated when, and what is known of the result."""
+
+    frame_start: IntProperty(
+        name="Start",
+        description="The frame at which the cloth is at rest",
+        default=1, min=-1_000_000, max=1_000_000,
+        options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    frame_end: IntProperty(
+        name="End",
+        description="The last frame that is simulated",
+        default=250, min=-1_000_000, max=1_000_000,
+        options=FIXED, override=OVERRIDABLE,
+    )  # fmt: skip
+    use_live: BoolProperty(
+        name="Live",
+        description="Simulate while the animation plays, as long as the cloth is not baked",
+        default=True, options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    status: StringProperty(
+        name="Status",
+        description="What is baked or in memory, and what is wrong with it",
+        get=_read_status, options=FIXED, override=OVERRIDABLE,
+    )  # fmt: skip
+    is_baked: BoolProperty(
+        name="Is Baked",
+        description="Whether the object plays a bake",
+        get=_read_is_baked, options=FIXED, override=OVERRIDABLE,
+    )  # fmt: skip
+    is_foreign: BoolProperty(
+        name="Is Foreign",
+        description="Whether the bake that the object plays belongs to another file or object",
+        get=_read_is_foreign, options=FIXED, override=OVERRIDABLE,
+    )  # fmt: skip
+    has_previous: BoolProperty(
+        name="Has Previous",
+        description="Whether the bake before this one is kept",
+        get=_read_has_previous, options=FIXED, override=OVERRIDABLE,
+    )  # fmt: skip
+    uuid: StringProperty(
+        name="Identity",
+        description="Name of the cloth's cache files",
+        default="", options=_HIDDEN, override=OVERRIDABLE,
+    )  # fmt: skip
+    bake_record: StringProperty(
+        name="Bake Record",
+        description="What the bake remembers of the cloth, to tell whether it is outdated",
+        default="", options=_HIDDEN, override=OVERRIDABLE,
+    )  # fmt: skip

@@ -1,0 +1,23 @@
+"""What a changed setting does: the live result no longer belongs to it."""
+
+from __future__ import annotations
+
+import bpy
+
+OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
+FIXED: set[str] = set()
+"""Options of a setting that makes no sense animated."""
+
+
+def changed(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Drop the live session of the cloth; the next play starts from the rest pose."""
+    from ..bridge import live
+
+    live.drop(settings.id_data)
+
+
+def switched(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Make the object a cloth, or no longer one."""
+    from ..bridge import cloth
+
+    cloth.switch(settings.id_data, settings.enabled)

@@ -1,0 +1,49 @@
+"""The whole of `object.boucle`."""
+
+import bpy
+from bpy.props import BoolProperty, PointerProperty
+from bpy.types import PropertyGroup
+
+from .._identifiers import POINTER
+from .cache import CacheProperties
+from .changes import FIXED, OVERRIDABLE, switched
+from .forces import ForceProperties
+from .shape import ShapeProperties
+from .solver import SolverProperties
+from .springs import SpringProperties
+
+
+class BOUCLE_PG_cloth(
+    SpringProperties,
+    ShapeProperties,
+    ForceProperties,
+    SolverProperties,
+    CacheProperties,
+    PropertyGroup,
+):
+    """Settings of one cloth"""
+
+    enabled: BoolProperty(
+        name="Boucle Cloth",
+        description="Simulate this object as cloth",
+        default=False, options=FIXED, override=OVERRIDABLE, update=switched,
+    )  # fmt: skip
+
+
+CLASSES = (BOUCLE_PG_cloth,)
+
+
+def attach() -> None:
+    """Give every object its settings."""
+    pointer = PointerProperty(
+        type=BOUCLE_PG_cloth,
+        name="Boucle Cloth",
+        description="Cloth settings",
+        override=OVERRIDABLE,
+    )
+    setattr(bpy.types.Object, POINTER, pointer)
+
+
+def detach() -> None:
+    """Take the settings away."""
+    delattr(bpy.types.Object, POINTER)

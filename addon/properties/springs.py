@@ -1,0 +1,95 @@
+"""Stiffness, damping and deformation of the classic mass-spring model."""
+
+from bpy.props import BoolProperty, EnumProperty, FloatProperty
+
+from .changes import FIXED, OVERRIDABLE, changed
+
+_LARGEST = 1e9
+
+
+class SpringProperties:
+    """Settings of the springs."""
+
+    stretch: FloatProperty(
+        name="Stretch",
+        description="Stiffness of the springs along mesh edges (N/m)",
+        default=500.0, min=0.0, max=_LARGEST, soft_max=10_000.0, precision=2,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    shear: FloatProperty(
+        name="Shear",
+        description="Stiffness of the springs across faces (N/m)",
+        default=100.0, min=0.0, max=_LARGEST, soft_max=10_000.0, precision=2,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    bend: FloatProperty(
+        name="Bend",
+        description="Stiffness of the springs to the vertex after next (N/m)",
+        default=5.0, min=0.0, max=_LARGEST, soft_max=1000.0, precision=2,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    damping: FloatProperty(
+        name="Damping",
+        description="Damping of every spring (N·s/m)",
+        default=0.01, min=0.0, max=_LARGEST, soft_max=1.0, precision=4, step=1,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    damping_per_kind: BoolProperty(
+        name="Per Kind",
+        description="Give stretch, shear and bend springs a damping of their own",
+        default=False, options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    damping_stretch: FloatProperty(
+        name="Stretch",
+        description="Damping of the springs along mesh edges (N·s/m)",
+        default=0.01, min=0.0, max=_LARGEST, soft_max=1.0, precision=4, step=1,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    damping_shear: FloatProperty(
+        name="Shear",
+        description="Damping of the springs across faces (N·s/m)",
+        default=0.01, min=0.0, max=_LARGEST, soft_max=1.0, precision=4, step=1,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    damping_bend: FloatProperty(
+        name="Bend",
+        description="Damping of the springs to the vertex after next (N·s/m)",
+        default=0.01, min=0.0, max=_LARGEST, soft_max=1.0, precision=4, step=1,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    damping_law: EnumProperty(
+        name="Law",
+        description="Which part of the relative velocity of a spring's ends is damped",
+        items=(
+            ("relative", "Relative", "All of the relative velocity"),
+            ("axial", "Axial", "Only its part along the spring"),
+        ),
+        default="relative", options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    air_damping: FloatProperty(
+        name="Air",
+        description="Viscous damping of every vertex by the air (N·s/m)",
+        default=0.0, min=0.0, max=_LARGEST, soft_max=0.1, precision=5, step=1,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    deformation_rate: FloatProperty(
+        name="Deformation Rate",
+        description="Elongation that springs are allowed, as a fraction of their rest length",
+        default=0.10, min=0.0, max=0.999, soft_max=0.5, precision=3, step=1,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    limiter: EnumProperty(
+        name="Limiter",
+        description="What keeps springs to the deformation rate",
+        items=(
+            ("none", "None", "Nothing: the cloth stretches as its springs allow"),
+            ("stiffen", "Stiffen", "Springs grow stiffer beyond the allowed length (k L/L0)"),
+            ("provot", "Provot", "The ends are moved back (Provot 1995)"),
+            (
+                "project",
+                "Project",
+                "The ends are moved back and lose the velocity that parts them",
+            ),
+        ),
+        default="project", options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip

@@ -1,0 +1,103 @@
+"""Each test runs in real Blender (the bpy package), in a process of its own with a time limit, for every supported version."""
+
+import importlib.util
+import inspect
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+VERSIONS = ("4.5", "4.2")
+SECONDS = 120
+"""A scenario takes seconds; Blender that hangs must not hold up the tests."""
+
+
+def blender_42():
+    """The Python that has bpy 4.2: a venv of its own, because one Python holds one bpy."""
+    named = os.environ.get("BOUCLE_BPY42_PYTHON")
+    if named:
+        return named
+    venv = ROOT / ".venv-bpy42"
+    python = venv / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    if not python.is_file():
+        subprocess.run([sys.executable, "-m", "venv", str(venv)], check=True)
+        requirements = ROOT / "scripts" / "requirements-bpy42.txt"
+        install = [str(python), "-m", "pip", "install", "--quiet", "--requirement"]
+        subprocess.run([*install, str(requirements)], check=True)
+    return str(python)
+
+
+@pytest.fixture(scope="session")
+def module_folder(tmp_path_factory):
+    """A folder with the compiled module alone, for a Python that has not installed it."""
+    spec = importlib.util.find_spec("boucle_core")
+    assert spec is not None, "boucle_core is not installed: run `python3 scripts/dev.py build`"
+    folder = tmp_path_factory.mktemp("module")
+    origin = Path(spec.origin)
+    if origin.name == "__init__.py":
+        shutil.copytree(origin.parent, folder / "boucle_core")
+    else:
+        shutil.copy(origin, folder)
+    return folder
+
+
+class Blender:
+    """One Blender version with a user folder of its own, in which the add-on is an extension."""
+
+    def __init__(self, version, folder, module_folder):
+        self.version = version
+        self.folder = folder
+        self.output = ""
+        self._python = sys.executable if version == "4.5" else blender_42()
+        resources = folder / "user"
+        extensions = resources / "extensions" / "user_default"
+        extensions.mkdir(parents=True)
+        shutil.copytree(
+            ROOT / "addon",
+            extensions / "boucle",
+            ignore=shutil.ignore_patterns("__pycache__"),
+        )
+        self._environment = {
+            **os.environ,
+            "BLENDER_USER_RESOURCES": str(resources),
+            "PYTHONPATH": str(module_folder),
+            "PYTHONDONTWRITEBYTECODE": "1",
+            "TMPDIR": str(folder),
+        }
+
+    def run(self, function, addon=True, **arguments):
+        """Call a function of the test's file inside Blender and return its result (JSON)."""
+        result = self.folder / "result.json"
+        result.unlink(missing_ok=True)
+        command = [
+            self._python,
+            str(Path(__file__).with_name("child.py")),
+            inspect.getfile(function),
+            function.__name__,
+            "1" if addon else "0",
+            json.dumps({key: str(value) for key, value in arguments.items()}),
+            str(result),
+        ]
+        done = subprocess.run(
+            command,
+            env=self._environment,
+            cwd=self.folder,
+            capture_output=True,
+            text=True,
+            timeout=SECONDS,
+            check=False,
+        )
+        self.output = done.stdout + done.stderr
+        assert done.returncode == 0, f"exit {done.returncode}\n{self.output}"
+        return json.loads(result.read_text())
+
+
+@pytest.fixture(params=VERSIONS)
+def blender(request, tmp_path, module_folder):
+    """Real Blender; the test's functions run inside it."""
+    return Blender(request.param, tmp_path, module_folder)

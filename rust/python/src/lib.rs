@@ -1,0 +1,30 @@
+//! The Python module `boucle_core`: translation only, no physics.
+//!
+//! - `boundary`: the one place where errors, panics and threads meet the interpreter
+//! - `buffers`: arrays in and out, by the buffer protocol
+//! - `simulation`: the class `Simulation`
+//! - `bake`: the function `bake`
+//!
+//! The surface is written down in `boucle_core.pyi`. Where the environment holds `BOUCLE_TEST_HOOKS` when the module is
+//! imported, it has one function more, `_panic_for_tests(simulation=None)`, which panics inside the boundary as a fault of
+//! our own would: tests show with it what becomes of a panic.
+
+mod bake;
+mod boundary;
+mod buffers;
+mod simulation;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn boucle_core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    boundary::keep_panics_quiet();
+    module.add("__version__", boucle_scene::VERSION)?;
+    boundary::add_exceptions(module)?;
+    module.add_class::<simulation::Simulation>()?;
+    module.add_function(wrap_pyfunction!(bake::bake, module)?)?;
+    if std::env::var_os("BOUCLE_TEST_HOOKS").is_some() {
+        module.add_function(wrap_pyfunction!(simulation::panic_for_tests, module)?)?;
+    }
+    Ok(())
+}

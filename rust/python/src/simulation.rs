@@ -1,0 +1,316 @@
+//! The class `Simulation`.
+
+use boucle_geometry::{Mesh, Vector};
+use boucle_scene::report::FrameRow;
+use boucle_scene::{Assembly, Error, RestMesh, Scene};
+use boucle_solver::{Certificate, Cloth};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use crate::boundary::{compute, raise, raise_internal, refuse};
+use crate::buffers;
+
+/// One cloth's mesh as Python gives it: positions, face starts, corners.
+type MeshArrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>);
+
+/// The bytes of a cloth's springs: ends, kinds, rest lengths, stiffnesses, dampings.
+type SpringBytes<'py> = (
+    Bound<'py, PyBytes>,
+    Bound<'py, PyBytes>,
+    Bound<'py, PyBytes>,
+    Bound<'py, PyBytes>,
+    Bound<'py, PyBytes>,
+);
+
+/// Cloths in motion, at the end of `frame`.
+#[pyclass(module = "boucle_core")]
+pub(crate) struct Simulation {
+    /// `None` after a panic: nobody knows what state it left.
+    assembly: Option<Assembly>,
+}
+
+#[pymethods]
+impl Simulation {
+    #[new]
+    #[expect(clippy::needless_pass_by_value, reason = "Python's sequence is taken apart into it")]
+    #[pyo3(signature = (scene, meshes, threads = 0))]
+    fn new(
+        py: Python<'_>,
+        scene: &str,
+        meshes: Vec<MeshArrays<'_>>,
+        threads: i64,
+    ) -> PyResult<Self> {
+        let scene = compute(py, || Scene::from_json(scene))?;
+        let threads = thread_count(py, threads)?;
+        if meshes.len() != scene.cloth.len() {
+            let (given, wanted) = (meshes.len(), scene.cloth.len());
+            return Err(refuse(
+                py,
+                format!("meshes holds {given}; accepted: {wanted}, one a cloth"),
+            ));
+        }
+        let mut rest_meshes = Vec::with_capacity(meshes.len());
+        for (cloth, arrays) in scene.cloth.iter().zip(&meshes) {
+            if cloth.grid.is_some() || cloth.mesh.is_some() {
+                let message =
+                    "grid or mesh; accepted: neither, as the mesh is given beside the scene";
+                return Err(refuse(py, format!("cloth.{}: {message}", cloth.name)));
+            }
+            let mut rest = rest_mesh(py, &cloth.name, arrays)?;
+            cloth.transform.place(&mut rest.positions);
+            rest_meshes.push(rest);
+        }
+        let assembly = compute(py, || Assembly::new(&scene, rest_meshes, threads))?;
+        Ok(Self { assembly: Some(assembly) })
+    }
+
+    #[getter]
+    fn frame(&self, py: Python<'_>) -> PyResult<i32> {
+        Ok(self.assembly(py)?.simulation.frame())
+    }
+
+    #[getter]
+    fn cloth_names(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let simulation = &self.assembly(py)?.simulation;
+        Ok((0..simulation.cloth_count())
+            .map(|index| simulation.cloth(index).name.clone())
+            .collect())
+    }
+
+    #[getter]
+    fn safe_time_step(&mut self, py: Python<'_>) -> PyResult<f64> {
+        self.with(py, |assembly| Ok(assembly.simulation.safe_time_step()))
+    }
+
+    #[getter]
+    fn substeps(&mut self, py: Python<'_>) -> PyResult<u32> {
+        self.with(py, |assembly| Ok(assembly.simulation.substeps()))
+    }
+
+    fn vertex_count(&self, py: Python<'_>, cloth: i64) -> PyResult<usize> {
+        Ok(self.cloth(py, cloth)?.1.positions.len())
+    }
+
+    fn spring_count(&self, py: Python<'_>, cloth: i64) -> PyResult<usize> {
+        Ok(self.cloth(py, cloth)?.1.springs.len())
+    }
+
+    fn set_positions(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        positions: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let (index, rest) = self.cloth(py, cloth)?;
+        let count = rest.positions.len();
+        let positions = buffers::positions(positions, "positions", Some(count))?;
+        buffers::check_finite(py, &positions, 0..count, "positions")?;
+        self.with(py, |assembly| {
+            assembly.simulation.set_positions(index, &positions);
+            Ok(())
+        })
+    }
+
+    fn set_pin_targets(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        targets: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let (index, rest) = self.cloth(py, cloth)?;
+        let targets = buffers::positions(targets, "targets", Some(rest.positions.len()))?;
+        let pins = rest.pins.iter().map(|&pin| pin as usize);
+        buffers::check_finite(py, &targets, pins, "targets")?;
+        self.with(py, |assembly| {
+            assembly.simulation.set_pin_targets(index, &targets);
+            Ok(())
+        })
+    }
+
+    #[pyo3(signature = (cloth, vertices = None))]
+    fn release_pins(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        vertices: Option<Vec<i64>>,
+    ) -> PyResult<()> {
+        let (index, rest) = self.cloth(py, cloth)?;
+        let count = rest.positions.len();
+        let vertex = |number: i64| match u32::try_from(number) {
+            Ok(vertex) if (vertex as usize) < count => Ok(vertex),
+            _ => {
+                let accepted = format!("0 to {}", count.saturating_sub(1));
+                Err(refuse(py, format!("vertices holds {number}; accepted: {accepted}")))
+            }
+        };
+        let vertices: Vec<u32> = match vertices {
+            Some(vertices) => vertices.into_iter().map(vertex).collect::<PyResult<_>>()?,
+            None => rest.pins.clone(),
+        };
+        self.with(py, |assembly| {
+            assembly.simulation.release_pins(index, &vertices);
+            Ok(())
+        })
+    }
+
+    fn advance<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let certificate = self.with(py, Assembly::advance)?;
+        row(py, &certificate)
+    }
+
+    fn certificate<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let certificate = self.with(py, |assembly| Ok(assembly.simulation.certificate()))?;
+        row(py, &certificate)
+    }
+
+    fn read_positions(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        out: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let index = self.cloth(py, cloth)?.0;
+        let rows = self.with(py, |assembly| Ok(assembly.simulation.positions(index)))?;
+        buffers::write_rows(out, &rows)
+    }
+
+    fn read_velocities(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        out: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let index = self.cloth(py, cloth)?.0;
+        let rows = self.with(py, |assembly| Ok(assembly.simulation.velocities(index)))?;
+        buffers::write_rows(out, &rows)
+    }
+
+    fn read_strain(&mut self, py: Python<'_>, cloth: i64, out: &Bound<'_, PyAny>) -> PyResult<()> {
+        let index = self.cloth(py, cloth)?.0;
+        let strain = self.with(py, |assembly| Ok(assembly.simulation.vertex_strain(index)))?;
+        buffers::write_numbers(out, &strain)
+    }
+
+    fn read_springs<'py>(&mut self, py: Python<'py>, cloth: i64) -> PyResult<SpringBytes<'py>> {
+        let index = self.cloth(py, cloth)?.0;
+        let [ends, kinds, lengths, stiffnesses, dampings] =
+            self.with(py, |assembly| Ok(spring_bytes(assembly, index)))?;
+        let bytes = |bytes: Vec<u8>| PyBytes::new(py, &bytes);
+        Ok((bytes(ends), bytes(kinds), bytes(lengths), bytes(stiffnesses), bytes(dampings)))
+    }
+
+    fn checkpoint<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = self.with(py, |assembly| Ok(assembly.simulation.checkpoint()))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    fn restore(&mut self, py: Python<'_>, checkpoint: &[u8]) -> PyResult<()> {
+        self.with(py, |assembly| Ok(assembly.simulation.restore(checkpoint)?))
+    }
+}
+
+impl Simulation {
+    /// Runs work on the simulation with the interpreter released; a panic breaks the simulation for good.
+    fn with<T: Send>(
+        &mut self,
+        py: Python<'_>,
+        work: impl Send + FnOnce(&mut Assembly) -> Result<T, Error>,
+    ) -> PyResult<T> {
+        let mut taken = self.assembly.take();
+        let Some(assembly) = taken.as_mut() else { return Err(broken(py)) };
+        let mut returned = false;
+        let outcome = compute(py, || {
+            let outcome = work(assembly);
+            returned = true;
+            outcome
+        });
+        if returned {
+            self.assembly = taken;
+        }
+        outcome
+    }
+
+    fn assembly(&self, py: Python<'_>) -> PyResult<&Assembly> {
+        self.assembly.as_ref().ok_or_else(|| broken(py))
+    }
+
+    /// The cloth of a number that Python gave.
+    fn cloth(&self, py: Python<'_>, cloth: i64) -> PyResult<(usize, &Cloth)> {
+        let simulation = &self.assembly(py)?.simulation;
+        match usize::try_from(cloth) {
+            Ok(index) if index < simulation.cloth_count() => Ok((index, simulation.cloth(index))),
+            _ => {
+                let accepted = format!("0 to {}", simulation.cloth_count().saturating_sub(1));
+                Err(refuse(py, format!("cloth = {cloth}; accepted: {accepted}")))
+            }
+        }
+    }
+}
+
+/// Panics inside the boundary, on a simulation if one is given.
+#[pyfunction]
+#[pyo3(name = "_panic_for_tests", signature = (simulation = None))]
+pub(crate) fn panic_for_tests(
+    py: Python<'_>,
+    simulation: Option<PyRefMut<'_, Simulation>>,
+) -> PyResult<()> {
+    match simulation {
+        Some(mut simulation) => simulation.with(py, |_| panic!("asked to panic\nby a test")),
+        None => compute(py, || panic!("asked to panic\nby a test")),
+    }
+}
+
+/// The number of threads that Python gave.
+pub(crate) fn thread_count(py: Python<'_>, threads: i64) -> PyResult<usize> {
+    let refused = || refuse(py, format!("threads = {threads}; accepted: 1 to 1024, or 0"));
+    let count = usize::try_from(threads).map_err(|_| refused())?;
+    boucle_scene::limits::threads(count).map_err(|error| raise(py, &error))?;
+    Ok(count)
+}
+
+fn broken(py: Python<'_>) -> PyErr {
+    let message = "the simulation was broken by an earlier fault of Boucle's own; make a new one";
+    raise_internal(py, message)
+}
+
+/// A certificate as a row of the report.
+fn row<'py>(py: Python<'py>, certificate: &Certificate) -> PyResult<Bound<'py, PyAny>> {
+    parse_json(py, &FrameRow::new(certificate, None).to_json())
+}
+
+/// JSON as Python objects.
+pub(crate) fn parse_json<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("json")?.call_method1("loads", (text,))
+}
+
+/// The rest mesh of one cloth, from Python's arrays.
+fn rest_mesh(py: Python<'_>, name: &str, arrays: &MeshArrays<'_>) -> PyResult<RestMesh> {
+    let (positions, starts, corners) = arrays;
+    let at = |what: &str| format!("{what} of cloth \"{name}\"");
+    let positions: Vec<Vector> = buffers::positions(positions, &at("positions"), None)?;
+    let mut starts = buffers::indices(starts, &at("face starts"))?;
+    let corners = buffers::indices(corners, &at("face corners"))?;
+    // The end of the last face may be left out.
+    if starts.last().is_none_or(|&last| (last as usize) < corners.len()) {
+        starts.push(corners.len() as u32);
+    }
+    let count = positions.len();
+    let mesh = compute(py, || {
+        Mesh::new(count, starts, corners)
+            .map_err(|error| Error::Input(format!("cloth \"{name}\": {error}")))
+    })?;
+    Ok(RestMesh { mesh, positions, grid: None })
+}
+
+/// A cloth's springs as native-endian bytes.
+fn spring_bytes(assembly: &Assembly, cloth: usize) -> [Vec<u8>; 5] {
+    let springs = &assembly.simulation.cloth(cloth).springs;
+    let stiffness = assembly.simulation.spring_stiffness(cloth);
+    [
+        springs.iter().flat_map(|spring| spring.ends).flat_map(u32::to_ne_bytes).collect(),
+        springs.iter().map(|spring| spring.kind as u8).collect(),
+        springs.iter().flat_map(|spring| spring.rest_length.to_ne_bytes()).collect(),
+        stiffness.into_iter().flat_map(f64::to_ne_bytes).collect(),
+        springs.iter().flat_map(|spring| spring.damping.to_ne_bytes()).collect(),
+    ]
+}

@@ -1,0 +1,127 @@
+//! From a scene and rest meshes to a simulation whose pins follow the scene.
+
+use boucle_geometry::{Aabb, Mesh, Vector};
+use boucle_solver::{Certificate, Cloth, IntegratorKind, Region, Settings, Simulation, Wind};
+
+use crate::description::{Choice, ClothDescription, Force, Grid, Scene};
+use crate::error::{Error, Result};
+use crate::limits;
+use crate::pins::PinTrack;
+
+/// The rest shape of a cloth.
+#[derive(Clone, Debug)]
+pub struct RestMesh {
+    /// Its faces.
+    pub mesh: Mesh,
+    /// Its rest positions (m), in world space.
+    pub positions: Vec<Vector>,
+    /// The grid it was made from, by which pins may be named.
+    pub grid: Option<Grid>,
+}
+
+/// A simulation and the pins that the scene moves and releases.
+pub struct Assembly {
+    /// The cloths in motion.
+    pub simulation: Simulation,
+    tracks: Vec<PinTrack>,
+    first_frame: i32,
+}
+
+impl Assembly {
+    /// Builds a simulation at the scene's first frame, at rest, from a rest mesh for each cloth. `threads` of 0 takes
+    /// every core.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the meshes, the pins or the numbers cannot be simulated.
+    pub fn new(scene: &Scene, meshes: Vec<RestMesh>, threads: usize) -> Result<Self> {
+        limits::threads(threads)?;
+        if meshes.len() != scene.cloth.len() {
+            return Err(Error::refuse("meshes", meshes.len(), &format!("{}", scene.cloth.len())));
+        }
+        let mut tracks = Vec::with_capacity(meshes.len());
+        let mut cloths = Vec::with_capacity(meshes.len());
+        for (description, rest) in scene.cloth.iter().zip(meshes) {
+            let at = format!("cloth.{}", description.name);
+            let track = PinTrack::new(&description.pins, &format!("{at}.pins"), &rest)?;
+            cloths.push(cloth(description, rest, track.vertices(), &at)?);
+            tracks.push(track);
+        }
+        let forces = scene.force.iter().enumerate();
+        let winds = forces
+            .map(|(index, force)| wind(force, &format!("force.{index}")))
+            .collect::<Result<_>>()?;
+        let simulation =
+            Simulation::new(cloths, winds, settings(scene, threads)).map_err(solver)?;
+        Ok(Self { simulation, tracks, first_frame: scene.scene.frames[0] })
+    }
+
+    /// Moves on by one frame, pins included.
+    ///
+    /// # Errors
+    /// [`Error::Diverged`]; the state is then that of the last good frame.
+    pub fn advance(&mut self) -> Result<Certificate> {
+        let frame = self.simulation.frame();
+        for (cloth, track) in self.tracks.iter().enumerate() {
+            track.prepare(&mut self.simulation, cloth, frame, self.first_frame);
+        }
+        self.simulation.advance().map_err(solver)
+    }
+}
+
+/// The word by which scenes and reports call an integrator.
+#[must_use]
+pub fn integrator_word(scene: &Scene) -> &'static str {
+    let integrator: IntegratorKind = scene.solver.integrator;
+    integrator.word()
+}
+
+fn settings(scene: &Scene, threads: usize) -> Settings {
+    Settings {
+        gravity: Vector::from(scene.scene.gravity),
+        fps: scene.scene.fps,
+        first_frame: scene.scene.frames[0],
+        integrator: scene.solver.integrator,
+        step_size: scene.solver.step_size(),
+        allow_unstable: scene.solver.allow_unstable,
+        threads,
+    }
+}
+
+fn cloth(
+    description: &ClothDescription,
+    rest: RestMesh,
+    pins: Vec<u32>,
+    at: &str,
+) -> Result<Cloth> {
+    let (mass, material) = (description.mass(), description.springs.material());
+    Cloth::from_mesh(&description.name, rest.mesh, rest.positions, &mass, material, pins).map_err(
+        |error| match error {
+            boucle_solver::Error::OutOfDomain { .. } => Error::input(format!("{at}.{error}")),
+            other => Error::from(other),
+        },
+    )
+}
+
+fn wind(force: &Force, at: &str) -> Result<Wind> {
+    let region = match &force.region {
+        None => Region::Everywhere,
+        Some(region) => match &region.r#box {
+            Some([min, max]) => {
+                Region::Box(Aabb { min: Vector::from(*min), max: Vector::from(*max) })
+            }
+            None => Region::Vertices(region.vertices.clone().unwrap_or_default()),
+        },
+    };
+    Ok(Wind { velocity: Vector::from(force.velocity), law: force.law(at)?, region })
+}
+
+/// The solver's refusals of a step, told with the table they come from.
+fn solver(error: boucle_solver::Error) -> Error {
+    use boucle_solver::Error as Solver;
+    match error {
+        Solver::Unstable { .. } | Solver::TooManySubsteps { .. } => {
+            Error::input(format!("solver: {error}"))
+        }
+        other => Error::from(other),
+    }
+}

@@ -1,0 +1,139 @@
+//! The files of a bake in its folder.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::assembly::Assembly;
+use crate::atomic::{self, Durability};
+use crate::checkpoint::{self, Checkpoint};
+use crate::description::Scene;
+use crate::error::{Error, Result};
+use crate::report::Report;
+use crate::{obj, pc2};
+
+/// Longest cloth name that names a file (bytes).
+const MAX_NAME: usize = 100;
+
+/// A bake's folder, and the caches that are open in it, one for each cloth.
+pub(super) struct Folder {
+    path: PathBuf,
+    caches: Vec<pc2::Writer>,
+}
+
+impl Folder {
+    /// The folder, made if missing.
+    pub(super) fn make(path: &Path) -> Result<Self> {
+        fs::create_dir_all(path).map_err(|error| Error::cache(path, "made", &error))?;
+        Ok(Self { path: path.to_owned(), caches: Vec::new() })
+    }
+
+    /// The checkpoint that a bake of this digest left, if any.
+    pub(super) fn read_checkpoint(&self, digest: u128) -> Result<Option<Checkpoint>> {
+        Checkpoint::read(&self.path.join(checkpoint::FILE_NAME), digest)
+    }
+
+    /// The path of the checkpoint, for messages.
+    pub(super) fn checkpoint_place(&self) -> String {
+        self.path.join(checkpoint::FILE_NAME).display().to_string()
+    }
+
+    /// Begins a bake: forgets the old checkpoint, writes the rest meshes, begins the caches.
+    pub(super) fn start_anew(
+        mut self,
+        assembly: &Assembly,
+        report: &Report,
+        first_kept: i32,
+    ) -> Result<Self> {
+        let old = self.path.join(checkpoint::FILE_NAME);
+        match fs::remove_file(&old) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(Error::cache(&old, "removed", &error));
+            }
+            _ => {}
+        }
+        self.write_report(report)?;
+        let simulation = &assembly.simulation;
+        for index in 0..simulation.cloth_count() {
+            let cloth = simulation.cloth(index);
+            let path = self.path.join(format!("{}.obj", cloth.name));
+            let mut bytes = Vec::new();
+            obj::write(&mut bytes, &cloth.mesh, &cloth.positions)
+                .map_err(|error| Error::cache(&path, "written", &error))?;
+            atomic::replace(&path, &bytes, Durability::Process)?;
+            let path = self.path.join(format!("{}.pc2", cloth.name));
+            let vertex_count = cloth.mesh.vertex_count() as u32;
+            self.caches.push(pc2::Writer::create(&path, vertex_count, first_kept)?);
+        }
+        Ok(self)
+    }
+
+    /// Takes up the caches after their first samples.
+    pub(super) fn take_up(
+        mut self,
+        assembly: &Assembly,
+        first_kept: i32,
+        sample_count: usize,
+    ) -> Result<Self> {
+        let simulation = &assembly.simulation;
+        for index in 0..simulation.cloth_count() {
+            let cloth = simulation.cloth(index);
+            let path = self.path.join(format!("{}.pc2", cloth.name));
+            let vertex_count = cloth.mesh.vertex_count() as u32;
+            let samples = sample_count as u32;
+            self.caches.push(pc2::Writer::resume(&path, vertex_count, first_kept, samples)?);
+        }
+        Ok(self)
+    }
+
+    /// Adds the positions of every cloth to its cache: of all cloths, or of none.
+    pub(super) fn append(&mut self, assembly: &Assembly) -> Result<()> {
+        let samples = self.caches.first().map_or(0, pc2::Writer::sample_count) as usize;
+        for (index, cache) in self.caches.iter_mut().enumerate() {
+            if let Err(error) = cache.append(&assembly.simulation.positions(index)) {
+                self.truncate(samples);
+                return Err(error);
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes samples back after a failed write. A cache that cannot even be cut keeps one sample more than the report,
+    /// and is still valid.
+    pub(super) fn truncate(&mut self, samples: usize) {
+        for cache in &mut self.caches {
+            drop(cache.truncate(samples as u32));
+        }
+    }
+
+    pub(super) fn write_report(&self, report: &Report) -> Result<()> {
+        report.write(&self.path.join("report.json"))
+    }
+
+    /// Writes the checkpoint, after the disk holds the caches that it goes on from.
+    pub(super) fn write_checkpoint(&self, checkpoint: &Checkpoint) -> Result<()> {
+        self.caches.iter().try_for_each(pc2::Writer::sync)?;
+        checkpoint.write(&self.path.join(checkpoint::FILE_NAME))
+    }
+}
+
+/// Refuses cloth names that cannot name a file on every system.
+pub(super) fn check_names(scene: &Scene) -> Result<()> {
+    for (index, cloth) in scene.cloth.iter().enumerate() {
+        let name = &cloth.name;
+        let is_bad = |letter: char| letter.is_control() || "/\\:*?\"<>|".contains(letter);
+        let fits = name.len() <= MAX_NAME
+            && !name.contains(is_bad)
+            && !name.starts_with(['.', ' '])
+            && !name.ends_with(['.', ' ']);
+        if !fits {
+            let accepted = "a file name of at most 100 bytes without / \\ : * ? \" < > |, and \
+                            without a dot or space at either end";
+            return Err(Error::refuse(
+                &format!("cloth.{index}.name"),
+                format!("{name:?}"),
+                accepted,
+            ));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,307 @@
+//! `[[cloth]]`: its rest shape, mass, pins and springs.
+
+use boucle_solver::{DampingLaw, Limiter, Mass, SpringMaterial};
+use serde::{Deserialize, Serialize};
+
+use super::choice::{Choice, FabricKeys, Later, NotYet};
+use super::pins::Pins;
+use super::table;
+use crate::error::{Error, Result};
+use crate::limits;
+
+/// Areal density (kg/m²) of a cloth that names no mass.
+const DEFAULT_DENSITY: f64 = 0.2;
+/// Largest mass of a particle (kg) and areal density (kg/m²).
+const MAX_MASS: f64 = 1e6;
+
+/// One cloth.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ClothDescription {
+    /// Names the files of the bake; no two cloths share it.
+    pub name: String,
+    /// The rest shape as a grid.
+    #[serde(default, deserialize_with = "table::optional")]
+    pub grid: Option<Grid>,
+    /// The rest shape as an OBJ file, beside the scene file.
+    pub mesh: Option<String>,
+    /// Which axis of the OBJ file points up.
+    #[serde(default, deserialize_with = "Choice::read", serialize_with = "Choice::write")]
+    pub up: UpAxis,
+    /// Where the rest shape stands.
+    #[serde(default, deserialize_with = "table::one")]
+    pub transform: Transform,
+    /// Areal density (kg/m²).
+    pub density: Option<f64>,
+    /// Mass of each particle (kg).
+    pub mass_per_vertex: Option<f64>,
+    /// Vertices that do not move of themselves.
+    #[serde(default)]
+    pub pins: Pins,
+    /// Which model of cloth.
+    #[serde(default, deserialize_with = "Choice::read", serialize_with = "Choice::write")]
+    pub model: Model,
+    /// `[cloth.springs]`.
+    #[serde(default, deserialize_with = "table::one")]
+    pub springs: Springs,
+    /// `[cloth.fabric]`, for later.
+    pub fabric: Option<Later<FabricKeys>>,
+    /// A named fabric, for later.
+    pub preset: Option<NotYet>,
+}
+
+impl ClothDescription {
+    /// Whether two cloths would share a file name on a system that ignores case.
+    pub(super) fn has_name_of(&self, other: &Self) -> bool {
+        self.name.to_lowercase() == other.name.to_lowercase()
+    }
+
+    /// The mass as the solver takes it.
+    #[must_use]
+    pub fn mass(&self) -> Mass {
+        match (self.density, self.mass_per_vertex) {
+            (_, Some(mass)) => Mass::PerVertex(mass),
+            (density, None) => Mass::Density(density.unwrap_or(DEFAULT_DENSITY)),
+        }
+    }
+
+    pub(super) fn check(&self, at: &str) -> Result<()> {
+        if self.name.is_empty() {
+            return Err(Error::refuse(&format!("{at}.name"), "\"\"", "a name"));
+        }
+        if let (Some(_), Some(_)) = (&self.grid, &self.mesh) {
+            return Err(Error::input(format!("{at}: grid and mesh; accepted: one of the two")));
+        }
+        if let Some(grid) = &self.grid {
+            grid.check(&format!("{at}.grid"))?;
+        }
+        if self.up != UpAxis::Z && self.mesh.is_none() {
+            return Err(Error::input(format!("{at}.up: accepted only with mesh")));
+        }
+        self.transform.check(&format!("{at}.transform"))?;
+        if let (Some(_), Some(_)) = (self.density, self.mass_per_vertex) {
+            let both = "density and mass_per_vertex; accepted: one of the two";
+            return Err(Error::input(format!("{at}: {both}")));
+        }
+        if let Some(density) = self.density {
+            limits::above_zero(&format!("{at}.density"), density, MAX_MASS, " kg/m²")?;
+        }
+        if let Some(mass) = self.mass_per_vertex {
+            limits::above_zero(&format!("{at}.mass_per_vertex"), mass, MAX_MASS, " kg")?;
+        }
+        self.pins.check(&format!("{at}.pins"))?;
+        let material = self.springs.material();
+        material.check().map_err(|error| Error::input(format!("{at}.{error}")))
+    }
+}
+
+/// A rectangular grid of quads.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Grid {
+    /// Lengths (m) along the first and the second axis of the plane.
+    pub size: [f64; 2],
+    /// Columns and rows of vertices.
+    pub vertices: [u32; 2],
+    /// The plane it lies in.
+    #[serde(default, deserialize_with = "Choice::read", serialize_with = "Choice::write")]
+    pub plane: Plane,
+    /// Its middle (m).
+    #[serde(default)]
+    pub center: [f64; 3],
+}
+
+impl Grid {
+    fn check(&self, at: &str) -> Result<()> {
+        for (axis, &size) in self.size.iter().enumerate() {
+            limits::above_zero(&format!("{at}.size.{axis}"), size, limits::MAX_LENGTH, " m")?;
+        }
+        for (axis, &count) in self.vertices.iter().enumerate() {
+            if count < 2 {
+                return Err(Error::refuse(&format!("{at}.vertices.{axis}"), count, "2 or more"));
+            }
+        }
+        let [columns, rows] = self.vertices.map(u64::from);
+        limits::vertices(&format!("{at}.vertices"), columns * rows)?;
+        limits::vector(&format!("{at}.center"), &self.center, limits::MAX_LENGTH, " m")
+    }
+}
+
+/// The plane of a grid: its first axis (columns) and its second (rows), as indices of x, y, z.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Plane {
+    /// Lying flat.
+    Xy,
+    /// Upright, facing y.
+    #[default]
+    Xz,
+    /// Upright, facing x.
+    Yz,
+}
+
+impl Plane {
+    /// The axes of columns and rows: 0 x, 1 y, 2 z.
+    #[must_use]
+    pub fn axes(self) -> [usize; 2] {
+        match self {
+            Self::Xy => [0, 1],
+            Self::Xz => [0, 2],
+            Self::Yz => [1, 2],
+        }
+    }
+}
+
+impl Choice for Plane {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("xy", Self::Xy), ("xz", Self::Xz), ("yz", Self::Yz)];
+}
+
+/// Which axis of a mesh file points up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum UpAxis {
+    /// As in Blender: the file is read as it stands.
+    #[default]
+    Z,
+    /// As in many other programs: y becomes z, z becomes -y.
+    Y,
+}
+
+impl Choice for UpAxis {
+    const WORDS: &'static [(&'static str, Self)] = &[("z", Self::Z), ("y", Self::Y)];
+}
+
+/// Where a rest shape stands: scaled, then turned, then moved.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Transform {
+    /// Displacement (m).
+    pub location: [f64; 3],
+    /// Angles (degrees) about the world's x, then y, then z.
+    pub rotation_deg: [f64; 3],
+    /// Factor of every length.
+    pub scale: f64,
+}
+
+impl Default for Transform {
+    fn default() -> Self {
+        Self { location: [0.0; 3], rotation_deg: [0.0; 3], scale: 1.0 }
+    }
+}
+
+impl Transform {
+    fn check(&self, at: &str) -> Result<()> {
+        limits::vector(&format!("{at}.location"), &self.location, limits::MAX_LENGTH, " m")?;
+        limits::vector(&format!("{at}.rotation_deg"), &self.rotation_deg, 1e6, " degrees")?;
+        limits::above_zero(&format!("{at}.scale"), self.scale, 1e6, "")
+    }
+}
+
+/// Which model of cloth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Model {
+    /// The classic mass-spring model.
+    #[default]
+    Springs,
+}
+
+impl Choice for Model {
+    const WORDS: &'static [(&'static str, Self)] = &[("springs", Self::Springs)];
+    const LATER: &'static [&'static str] = &["fabric"];
+}
+
+/// What the three stiffnesses are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StiffnessFrom {
+    /// Those of the springs themselves.
+    #[default]
+    Springs,
+}
+
+impl Choice for StiffnessFrom {
+    const WORDS: &'static [(&'static str, Self)] = &[("springs", Self::Springs)];
+    const LATER: &'static [&'static str] = &["continuum"];
+}
+
+impl Choice for DampingLaw {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("relative", Self::Relative), ("axial", Self::Axial)];
+}
+
+impl Choice for Limiter {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("none", Self::None),
+        ("stiffen", Self::Stiffen),
+        ("provot", Self::Provot),
+        ("project", Self::Project),
+    ];
+}
+
+/// `[cloth.springs]`: the mass-spring material.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Springs {
+    /// Stiffness (N/m) of stretch springs.
+    pub stretch: f64,
+    /// Stiffness (N/m) of shear springs.
+    pub shear: f64,
+    /// Stiffness (N/m) of bend springs.
+    pub bend: f64,
+    /// Damping (N·s/m) of every spring whose kind names none.
+    pub damping: f64,
+    /// Damping (N·s/m) of stretch springs.
+    pub damping_stretch: Option<f64>,
+    /// Damping (N·s/m) of shear springs.
+    pub damping_shear: Option<f64>,
+    /// Damping (N·s/m) of bend springs.
+    pub damping_bend: Option<f64>,
+    /// Which relative velocity is damped.
+    #[serde(deserialize_with = "Choice::read", serialize_with = "Choice::write")]
+    pub damping_law: DampingLaw,
+    /// Viscous damping (N·s/m) of every particle by the air.
+    pub air_damping: f64,
+    /// What the stiffnesses are.
+    #[serde(deserialize_with = "Choice::read", serialize_with = "Choice::write")]
+    pub stiffness_from: StiffnessFrom,
+    /// Allowed elongation, as a fraction of the rest length.
+    pub deformation_rate: f64,
+    /// What keeps to it.
+    #[serde(deserialize_with = "Choice::read", serialize_with = "Choice::write")]
+    pub limiter: Limiter,
+}
+
+impl Default for Springs {
+    fn default() -> Self {
+        let material = SpringMaterial::default();
+        let [stretch, shear, bend] = material.stiffness;
+        Self {
+            stretch,
+            shear,
+            bend,
+            damping: 0.0,
+            damping_stretch: None,
+            damping_shear: None,
+            damping_bend: None,
+            damping_law: material.damping_law,
+            air_damping: material.air_damping,
+            stiffness_from: StiffnessFrom::default(),
+            deformation_rate: material.deformation_rate,
+            limiter: material.limiter,
+        }
+    }
+}
+
+impl Springs {
+    /// The material as the solver takes it.
+    #[must_use]
+    pub fn material(&self) -> SpringMaterial {
+        let kinds = [self.damping_stretch, self.damping_shear, self.damping_bend];
+        SpringMaterial {
+            stiffness: [self.stretch, self.shear, self.bend],
+            damping: kinds.map(|damping| damping.unwrap_or(self.damping)),
+            damping_law: self.damping_law,
+            air_damping: self.air_damping,
+            deformation_rate: self.deformation_rate,
+            limiter: self.limiter,
+        }
+    }
+}

@@ -1,0 +1,181 @@
+//! A scene as data: the keys of SCENE.toml, typed and checked.
+//!
+//! The same keys come as TOML (files) and as JSON (from Blender). Either becomes a tree, overrides change the tree, and only
+//! then it is typed, so that every refusal can name the key and the value that stands there. Keys that later versions will
+//! take are known and refused by name; nothing is ignored.
+
+mod choice;
+mod cloth;
+mod force;
+mod pins;
+mod solver;
+mod table;
+mod tree;
+
+pub(crate) use choice::Choice;
+pub use choice::{ColliderKeys, CollisionKeys, FabricKeys, Later, LaterKeys, NotYet, TearKeys};
+pub use cloth::{ClothDescription, Grid, Plane, Springs, Transform, UpAxis};
+pub use force::{Force, RegionDescription};
+pub use pins::{Keyframe, PinGroup, Pins};
+pub use solver::{SolverDescription, Substeps};
+pub(crate) use tree::joined;
+
+use serde::{Deserialize, Serialize};
+use toml::Value;
+
+use crate::error::{Error, Result};
+use crate::limits;
+use crate::overrides;
+
+/// A whole scene.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// `[scene]`: frames, frame rate, gravity.
+    #[serde(default, deserialize_with = "table::one")]
+    pub scene: Timing,
+    /// `[[cloth]]`: at least one.
+    #[serde(default, deserialize_with = "table::list")]
+    pub cloth: Vec<ClothDescription>,
+    /// `[solver]`.
+    #[serde(default, deserialize_with = "table::one")]
+    pub solver: SolverDescription,
+    /// `[[force]]`.
+    #[serde(default, deserialize_with = "table::list")]
+    pub force: Vec<Force>,
+    /// `[collision]`, for later.
+    pub collision: Option<Later<CollisionKeys>>,
+    /// `[[collider]]`, for later.
+    pub collider: Option<Later<ColliderKeys>>,
+    /// `[tear]`, for later.
+    pub tear: Option<Later<TearKeys>>,
+}
+
+/// `[scene]`: when, and under which gravity.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Timing {
+    /// First and last frame, both included; the first is the rest pose.
+    pub frames: [i32; 2],
+    /// Frames a second.
+    pub fps: f64,
+    /// Acceleration of gravity (m/s²).
+    pub gravity: [f64; 3],
+}
+
+impl Default for Timing {
+    fn default() -> Self {
+        Self { frames: [1, 120], fps: 24.0, gravity: [0.0, 0.0, -9.81] }
+    }
+}
+
+impl Scene {
+    /// Reads a scene from TOML text, changed by overrides (`key.path=value`, in their order).
+    ///
+    /// # Errors
+    /// [`Error::Input`] for the first thing that is wrong.
+    pub fn from_toml(text: &str, overrides: &[String]) -> Result<Self> {
+        let table: toml::Table = text.parse().map_err(|error| syntax(text, &error))?;
+        let mut tree = Value::Table(table);
+        for text in overrides {
+            overrides::apply(&mut tree, text)?;
+        }
+        Self::from_tree(&tree)
+    }
+
+    /// Reads a scene from JSON text with the same keys; null stands for a missing key.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for the first thing that is wrong.
+    pub fn from_json(text: &str) -> Result<Self> {
+        let json: serde_json::Value = serde_json::from_str(text)
+            .map_err(|error| Error::input(format!("the scene is not JSON: {error}")))?;
+        Self::from_tree(&tree_of_json("", &json)?)
+    }
+
+    fn from_tree(tree: &Value) -> Result<Self> {
+        force::refuse_later_kinds(tree)?;
+        let table::Table(scene): table::Table<Self> = tree::typed(tree)?;
+        scene.check()?;
+        Ok(scene)
+    }
+
+    /// Refuses values outside their ranges and keys that exclude each other.
+    fn check(&self) -> Result<()> {
+        self.scene.check()?;
+        if self.cloth.is_empty() {
+            return Err(Error::input("cloth is missing; accepted: one [[cloth]] or more"));
+        }
+        for (index, cloth) in self.cloth.iter().enumerate() {
+            let twin = self.cloth[..index].iter().find(|other| other.has_name_of(cloth));
+            if twin.is_some() {
+                let accepted = "a name that no other cloth has, whatever its case";
+                return Err(Error::refuse(
+                    &format!("cloth.{index}.name"),
+                    format!("\"{}\"", cloth.name),
+                    accepted,
+                ));
+            }
+            cloth.check(&format!("cloth.{}", cloth.name))?;
+        }
+        self.solver.check(self.scene.fps)?;
+        for (index, force) in self.force.iter().enumerate() {
+            force.check(&format!("force.{index}"))?;
+        }
+        Ok(())
+    }
+}
+
+impl Timing {
+    fn check(&self) -> Result<()> {
+        let [first, last] = self.frames;
+        limits::frame("scene.frames.0", first)?;
+        limits::frame("scene.frames.1", last)?;
+        if first > last {
+            let shown = format!("[{first}, {last}]");
+            return Err(Error::refuse("scene.frames", shown, "the first frame before the last"));
+        }
+        limits::within("scene.fps", self.fps, &(0.01..=1e6), "0.01 to 1e6 frames/s")?;
+        limits::vector("scene.gravity", &self.gravity, limits::MAX_GRAVITY, " m/s²")
+    }
+}
+
+/// A syntax error of TOML in one line, with where it is.
+fn syntax(text: &str, error: &toml::de::Error) -> Error {
+    let start = error.span().map_or(0, |span| span.start.min(text.len()));
+    let before = text.get(..start).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|&letter| letter != '\n').count() + 1;
+    let message = error.message().lines().collect::<Vec<_>>().join("; ");
+    Error::input(format!("line {line}, column {column}: {message}; accepted: TOML"))
+}
+
+/// A JSON value as a tree; null is left out of tables.
+fn tree_of_json(key: &str, json: &serde_json::Value) -> Result<Value> {
+    use serde_json::Value as Json;
+    Ok(match json {
+        Json::Null => return Err(Error::refuse(key, "null", "a value")),
+        Json::Bool(flag) => Value::Boolean(*flag),
+        Json::Number(number) => match (number.as_i64(), number.as_f64()) {
+            (Some(whole), _) => Value::Integer(whole),
+            (None, Some(real)) => Value::Float(real),
+            (None, None) => return Err(Error::refuse(key, number, "a number")),
+        },
+        Json::String(text) => Value::String(text.clone()),
+        Json::Array(list) => {
+            let elements = list.iter().enumerate();
+            let tree = |(index, value)| tree_of_json(&joined(key, &format!("{index}")), value);
+            Value::Array(elements.map(tree).collect::<Result<_>>()?)
+        }
+        Json::Object(table) => {
+            let entries = table.iter().filter(|(_, value)| !value.is_null());
+            let tree = |(name, value): (&String, _)| {
+                Ok((name.clone(), tree_of_json(&joined(key, name), value)?))
+            };
+            Value::Table(entries.map(tree).collect::<Result<_>>()?)
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests;

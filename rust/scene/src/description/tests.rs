@@ -1,0 +1,300 @@
+use super::*;
+
+const GOOD: &str = r#"
+[scene]
+frames = [1, 10]
+[[cloth]]
+name = "flag"
+grid = { size = [2, 1.0], vertices = [5, 4], plane = "xz", center = [0, 0, 0] }
+transform = { location = [0, 0, 0], rotation_deg = [0, 0, 0], scale = 1 }
+density = 0.2
+pins = ["top_left", { vertices = [1, 2], release = 5 }]
+model = "springs"
+[cloth.springs]
+stretch = 500
+damping = 1.0
+damping_bend = 0.5
+limiter = "provot"
+[solver]
+integrator = "rk4"
+substeps = 8
+[[force]]
+kind = "wind"
+velocity = [0, 3, 0]
+coefficient = 0.02
+region = { box = [[0, 0, 0], [1, 1, 1]] }
+"#;
+
+fn refusal(text: &str) -> String {
+    Scene::from_toml(text, &[]).expect_err(text).to_string()
+}
+
+/// The refusal of a good scene with one override.
+fn refused(change: &str) -> String {
+    Scene::from_toml(GOOD, &[change.to_owned()]).expect_err(change).to_string()
+}
+
+#[test]
+fn a_scene_is_read_with_its_values_and_defaults() {
+    let scene = Scene::from_toml(GOOD, &[]).expect("a good scene");
+    let cloth = &scene.cloth[0];
+    let material = cloth.springs.material();
+    let bits = |numbers: [f64; 3]| numbers.map(f64::to_bits);
+    assert_eq!(bits(material.stiffness), bits([500.0, 100.0, 5.0]));
+    assert_eq!(bits(material.damping), bits([1.0, 1.0, 0.5]));
+    assert_eq!(cloth.pins.groups.len(), 2);
+    assert_eq!(cloth.pins.groups[1].release, Some(5));
+    assert_eq!(scene.solver.integrator, boucle_solver::IntegratorKind::Rk4);
+    assert!((scene.scene.fps - 24.0).abs() < f64::EPSILON);
+    assert!(scene.force[0].region.as_ref().is_some_and(|region| region.r#box.is_some()));
+}
+
+#[test]
+fn json_reads_as_toml_does_and_null_is_a_missing_key() {
+    let table: toml::Table = GOOD.parse().expect("good TOML");
+    let mut json = serde_json::to_value(&table).expect("every value has JSON");
+    json["solver"]["time_step"] = serde_json::Value::Null;
+    let from_json = Scene::from_json(&json.to_string()).expect("a good scene");
+    let from_toml = Scene::from_toml(GOOD, &[]).expect("a good scene");
+    let text = |scene: &Scene| serde_json::to_string(scene).expect("every scene has JSON");
+    assert_eq!(text(&from_json), text(&from_toml));
+    for (text, expected) in [
+        ("{", "not JSON"),
+        ("[1]", "the scene = [1]; accepted: a table"),
+        (r#"{"cloth": [null]}"#, "cloth.0 = null"),
+        (r#"{"cloth": [{"nam": "a"}]}"#, "cloth.0.nam is an unknown key; did you mean \"name\"?"),
+    ] {
+        let error = Scene::from_json(text).expect_err(text).to_string();
+        assert!(error.contains(expected), "{error}");
+        assert!(!error.contains('\n'), "{error}");
+    }
+}
+
+#[test]
+fn unknown_keys_are_refused_by_name_with_what_was_perhaps_meant() {
+    for (change, expected) in [
+        ("cloth.0.densty=1", "cloth.flag.densty is an unknown key; did you mean \"density\"?"),
+        (
+            "cloth.0.springs.shaer=1",
+            "cloth.flag.springs.shaer is an unknown key; did you mean \"shear\"?",
+        ),
+        ("scene.zzz=1", "scene.zzz is an unknown key; accepted: frames, fps, gravity"),
+        ("solvr.substeps=1", "solvr is an unknown key; did you mean \"solver\"?"),
+        ("cloth.0.grid.sizes=1", "cloth.flag.grid.sizes is an unknown key"),
+        ("cloth.0.pins.1.vertex=1", "cloth.flag.pins.1.vertex is an unknown key"),
+        ("force.0.region.boxes=1", "force.0.region.boxes is an unknown key"),
+        ("collision.slef=true", "collision.slef is an unknown key; did you mean \"self\"?"),
+        ("name.name=1", "name is an unknown key"),
+        ("scene.scene=1", "scene.scene is an unknown key"),
+    ] {
+        let error = refused(change);
+        assert!(error.starts_with(expected), "{error} for {change}");
+    }
+}
+
+#[test]
+fn keys_of_later_versions_are_refused_by_name() {
+    let fabric = [
+        "stretch_warp",
+        "stretch_weft",
+        "shear",
+        "bend_warp",
+        "bend_weft",
+        "damping_ratio",
+        "deformation_rate",
+    ];
+    for key in fabric {
+        let expected = format!("cloth.flag.fabric.{key} is not supported yet");
+        assert_eq!(refused(&format!("cloth.0.fabric.{key}=1")), expected);
+    }
+    for key in ["self", "thickness", "friction"] {
+        let expected = format!("collision.{key} is not supported yet");
+        assert_eq!(refused(&format!("collision.{key}=1")), expected);
+    }
+    for key in ["enabled", "force", "strain"] {
+        assert_eq!(refused(&format!("tear.{key}=1")), format!("tear.{key} is not supported yet"));
+    }
+    for (text, expected) in [
+        ("[[collider]]\nname = \"ball\"\n", "collider.ball.name is not supported yet"),
+        (
+            "[[collider]]\nsphere = { center = [0, 0, 0], radius = 1 }\n",
+            "collider.0.sphere is not supported yet",
+        ),
+        ("[[collider]]\nplane = 1\n", "collider.0.plane is not supported yet"),
+        ("[[collider]]\n", "collider.0 is not supported yet"),
+        ("collider = []\n", "collider is not supported yet"),
+        ("[collision]\n", "collision is not supported yet"),
+        ("[tear]\n", "tear is not supported yet"),
+    ] {
+        assert_eq!(refusal(&format!("{text}{GOOD}")), expected);
+    }
+    assert_eq!(refused("solver.tolerance=1e-3"), "solver.tolerance is not supported yet");
+    assert_eq!(refused("cloth.0.preset=\"denim\""), "cloth.flag.preset is not supported yet");
+    for (change, expected) in [
+        (
+            "cloth.0.model=fabric",
+            "cloth.flag.model = \"fabric\" is not supported yet; accepted: \"springs\"",
+        ),
+        (
+            "cloth.0.springs.stiffness_from=continuum",
+            "cloth.flag.springs.stiffness_from = \"continuum\" is not supported yet",
+        ),
+        (
+            "solver.integrator=implicit_euler",
+            "solver.integrator = \"implicit_euler\" is not supported yet; accepted: \"symplectic_euler\"",
+        ),
+        ("solver.integrator=bdf2", "solver.integrator = \"bdf2\" is not supported yet"),
+        ("cloth.0.pins.1.weight=0.5", "cloth.flag.pins.1.weight = 0.5 is not supported yet"),
+        ("force.0.kind=drag", "force.0.kind = \"drag\" is not supported yet"),
+    ] {
+        let error = refused(change);
+        assert!(error.starts_with(expected), "{error} for {change}");
+    }
+    for kind in ["drag", "turbulence", "vortex", "water", "point"] {
+        let text = format!("{GOOD}\n[[force]]\nkind = \"{kind}\"\nflow = 3\n");
+        assert!(refusal(&text).starts_with(&format!("force.1.kind = \"{kind}\" is not supported")));
+    }
+}
+
+/// An override of the good scene, and how its refusal begins.
+const WRONG_VALUES: &[(&str, &str)] = &[
+    ("scene.fps=\"fast\"", "scene.fps = \"fast\"; accepted: a number"),
+    ("scene.fps=0", "scene.fps = 0.0; accepted: 0.01 to 1e6"),
+    ("scene.fps=nan", "scene.fps = NaN; accepted"),
+    ("scene.gravity=[0, 0, -inf]", "scene.gravity.2 = -inf; accepted"),
+    ("scene.gravity=[0, 0]", "scene.gravity = [0, 0]; accepted: 3 numbers"),
+    ("scene.gravity=9.81", "scene.gravity = 9.81; accepted: 3 numbers"),
+    ("scene.frames=[10, 1]", "scene.frames = [10, 1]; accepted"),
+    ("scene.frames=[1.5, 3]", "scene.frames.0 = 1.5; accepted: a whole number"),
+    ("scene.frames=[1, 99999999999]", "scene.frames.1 = 99999999999; accepted: a whole number"),
+    ("scene.frames=[1, 2000000]", "scene.frames.1 = 2000000; accepted"),
+    ("cloth.0.name=\"\"", "cloth..name = \"\"; accepted: a name"),
+    ("cloth.0.name=3", "cloth.0.name = 3; accepted: text in quotes"),
+    ("cloth.0.density=-1", "cloth.flag.density = -1.0; accepted: above 0"),
+    ("cloth.0.density=1e300", "cloth.flag.density = 1e300; accepted: above 0"),
+    ("cloth.0.density=true", "cloth.flag.density = true; accepted: a number"),
+    ("cloth.0.mass_per_vertex=0", "cloth.flag.mass_per_vertex = 0.0; accepted: above 0"),
+    ("cloth.0.grid.size=[0, 1]", "cloth.flag.grid.size.0 = 0.0; accepted"),
+    ("cloth.0.grid.vertices=[1, 5]", "cloth.flag.grid.vertices.0 = 1; accepted: 2 or more"),
+    (
+        "cloth.0.grid.vertices=[-4, 5]",
+        "cloth.flag.grid.vertices.0 = -4; accepted: a whole number from 0",
+    ),
+    (
+        "cloth.0.grid.vertices=[4000, 2500]",
+        "cloth.flag.grid.vertices: 10000000 vertices; accepted: at most 4000000",
+    ),
+    ("cloth.0.grid.vertices=[4294967295, 4294967295]", "cloth.flag.grid.vertices: 184467"),
+    ("cloth.0.grid.plane=zx", "cloth.flag.grid.plane = \"zx\"; accepted: \"xy\", \"xz\", \"yz\""),
+    ("cloth.0.transform.scale=0", "cloth.flag.transform.scale = 0.0; accepted: above 0"),
+    ("cloth.0.up=y", "cloth.flag.up: accepted only with mesh"),
+    ("cloth.0.springs.stretch=-5", "cloth.flag.springs.stretch (N/m) is -5; accepted"),
+    (
+        "cloth.0.springs.deformation_rate=10",
+        "cloth.flag.springs.deformation_rate is 10; accepted: 0 to below 1, as a fraction (did you mean 0.10",
+    ),
+    (
+        "cloth.0.springs.limiter=projct",
+        "cloth.flag.springs.limiter = \"projct\"; accepted: \"none\", \"stiffen\", \"provot\", \"project\" (did you mean \"project\"?)",
+    ),
+    (
+        "cloth.0.springs.damping_law=3",
+        "cloth.flag.springs.damping_law = 3; accepted: text in quotes",
+    ),
+    ("cloth.0.springs=5", "cloth.flag.springs = 5; accepted: a table"),
+    ("cloth.0.pins=5", "cloth.flag.pins = 5; accepted: a list of names and tables, or one table"),
+    (
+        "cloth.0.pins=[5]",
+        "cloth.flag.pins.0 = 5; accepted: a name such as \"top_left\", or a table",
+    ),
+    (
+        "cloth.0.pins={vertices=[-1]}",
+        "cloth.flag.pins.vertices.0 = -1; accepted: a whole number from 0",
+    ),
+    ("cloth.0.pins={near=[0,0,0]}", "cloth.flag.pins.radius is missing"),
+    ("cloth.0.pins={radius=1}", "cloth.flag.pins accepts one of"),
+    ("cloth.0.pins={near=[0,0,0], radius=-1}", "cloth.flag.pins.radius = -1.0; accepted"),
+    ("cloth.0.pins=[{}]", "cloth.flag.pins.0 accepts one of"),
+    ("cloth.0.pins.1.weight=2", "cloth.flag.pins.1.weight = 2.0; accepted: 0 to 1"),
+    (
+        "cloth.0.pins.1.motion=[{frame=3},{frame=3}]",
+        "cloth.flag.pins.1.motion.1.frame = 3; accepted: a frame after 3",
+    ),
+    ("cloth.0.pins.1.motion=[{location=[0,0,0]}]", "cloth.flag.pins.1.motion.0.frame is missing"),
+    (
+        "cloth.0.pins.1.motion=[{frame=3, location=[0, 0, nan]}]",
+        "cloth.flag.pins.1.motion.0.location.2 = NaN",
+    ),
+    ("solver.substeps=0", "solver.substeps = 0; accepted: \"auto\", or a whole number from 1"),
+    ("solver.substeps=2.5", "solver.substeps = 2.5; accepted: \"auto\""),
+    ("solver.substeps=fast", "solver.substeps = \"fast\"; accepted: \"auto\""),
+    ("solver.time_step=-1", "solver.time_step = -1.0; accepted: above 0"),
+    ("solver.time_step=1e-12", "solver.time_step = 1e-12; accepted: at least"),
+    ("solver.allow_unstable=1", "solver.allow_unstable = 1; accepted: true or false"),
+    ("solver.integrator=rk5", "solver.integrator = \"rk5\"; accepted: "),
+    ("force.0.velocity=[0, 1e9, 0]", "force.0.velocity.1 = 1000000000.0; accepted"),
+    ("force.0.coefficient=-1", "force.0.coefficient = -1.0; accepted: 0 to 1e6"),
+    ("force.0.region={}", "force.0.region accepts either box or vertices"),
+    (
+        "force.0.region={box=[[0,0,1],[1,1,0]]}",
+        "force.0.region.box.1.2 = 0.0; accepted: 1.0 or more",
+    ),
+    (
+        "cloth.0.transform=[[0,0,0],[0,0,0],1]",
+        "cloth.flag.transform = [[0, 0, 0], [0, 0, 0], 1]; accepted: a table",
+    ),
+    ("cloth.0.grid=[]", "cloth.flag.grid = []; accepted: a table"),
+    ("cloth.0.pins.1.motion=[[1]]", "cloth.flag.pins.1.motion.0 = [1]; accepted: a table"),
+    ("solver=[]", "solver = []; accepted: a table"),
+    ("force=3", "force = 3; accepted: a list"),
+    ("cloth=[]", "cloth is missing; accepted: one [[cloth]] or more"),
+    ("cloth=[3]", "cloth.0 = 3; accepted: a table"),
+];
+
+#[test]
+fn wrong_types_and_ranges_are_refused_with_key_value_and_what_is_accepted() {
+    for (change, expected) in WRONG_VALUES {
+        let error = refused(change);
+        assert!(error.starts_with(expected), "{error} for {change}");
+        assert!(!error.contains('\n'), "{error}");
+    }
+}
+
+#[test]
+fn keys_that_exclude_each_other_or_are_missing_are_refused() {
+    for (from, to, expected) in [
+        (
+            "density = 0.2",
+            "density = 0.2\nmass_per_vertex = 0.1",
+            "cloth.flag: density and mass_per_vertex",
+        ),
+        ("density = 0.2", "mesh = \"a.obj\"", "cloth.flag: grid and mesh"),
+        ("substeps = 8", "substeps = 8\ntime_step = 0.1", "solver: substeps and time_step"),
+        (
+            "coefficient = 0.02",
+            "coefficient = 0.02\nair_density = 1.2",
+            "force.0: coefficient and air_density",
+        ),
+        ("coefficient = 0.02", "", "force.0.coefficient is missing"),
+        ("velocity = [0, 3, 0]", "", "force.0.velocity is missing"),
+        ("kind = \"wind\"", "", "force.0.kind is missing"),
+        ("name = \"flag\"", "", "cloth.0.name is missing"),
+        ("size = [2, 1.0], ", "", "cloth.flag.grid.size is missing"),
+    ] {
+        let error = refusal(&GOOD.replace(from, to));
+        assert!(error.starts_with(expected), "{error} for {to}");
+    }
+    let twins = format!("{GOOD}\n[[cloth]]\nname = \"Flag\"\nmesh = \"a.obj\"\n");
+    assert!(refusal(&twins).starts_with("cloth.1.name = \"Flag\"; accepted: a name that no other"));
+    assert!(refusal("").starts_with("cloth is missing"));
+}
+
+#[test]
+fn a_syntax_error_is_told_with_its_line_in_one_line() {
+    for text in ["[scene\n", "a = \n", "[scene]\nfps = 24\nfps = 25\n", "x = \"unclosed\n", "{}"] {
+        let error = refusal(text);
+        assert!(error.starts_with("line "), "{error}");
+        assert!(!error.contains('\n') && error.ends_with("accepted: TOML"), "{error}");
+    }
+    assert!(refusal("[scene]\nfps = 24\nfps = 25\n").starts_with("line 3, column 1"));
+}

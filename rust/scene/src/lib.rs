@@ -1,0 +1,32 @@
+//! Scenes as data, the files around them, and the headless bake.
+//!
+//! ```text
+//! SCENE.toml -> description -> assembly -> bake -> NAME.pc2, NAME.obj, report.json, checkpoint
+//!     --set ->  (keys typed     (meshes, pins,
+//!               and checked)     simulation)
+//! ```
+//! Every refusal is an [`Error`] of one line that names the file, the key, the value and what is accepted.
+
+pub mod assembly;
+mod atomic;
+pub mod bake;
+pub mod checkpoint;
+pub mod description;
+mod error;
+mod grid;
+pub mod limits;
+pub mod obj;
+mod overrides;
+pub mod pc2;
+mod pins;
+pub mod report;
+pub mod source;
+pub mod transform;
+
+pub use assembly::{Assembly, RestMesh};
+pub use description::Scene;
+pub use error::{Error, Result};
+pub use grid::PLACES;
+
+/// The version of Boucle, as reports name it.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

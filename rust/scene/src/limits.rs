@@ -1,0 +1,98 @@
+//! How large a scene may be, and the checks of numbers against their ranges.
+//!
+//! Every size is checked before anything is allocated for it.
+
+use std::ops::RangeInclusive;
+
+use crate::error::{Error, Result};
+
+/// Vertices of all cloths of a scene together (at most 4 million: about 6 GB of springs and state).
+pub const MAX_VERTICES: usize = 4_000_000;
+/// Bytes of a scene file (64 MiB).
+pub const MAX_SCENE_BYTES: u64 = 64 << 20;
+/// Largest coordinate and size (m); beyond it a float32 cache resolves less than 6 cm.
+pub const MAX_LENGTH: f64 = 1e6;
+/// Largest frame number, as in Blender.
+pub const MAX_FRAME: i32 = 1_048_574;
+/// Largest component of gravity (m/s²).
+pub const MAX_GRAVITY: f64 = 1e6;
+/// Worker threads.
+pub const MAX_THREADS: usize = 1024;
+
+/// Refuses a number outside a range; NaN is outside every range.
+pub(crate) fn within(
+    key: &str,
+    value: f64,
+    range: &RangeInclusive<f64>,
+    accepted: &str,
+) -> Result<()> {
+    if range.contains(&value) {
+        return Ok(());
+    }
+    Err(Error::refuse(key, format!("{value:?}"), accepted))
+}
+
+/// Refuses a number that is not above zero and at most `max`.
+pub(crate) fn above_zero(key: &str, value: f64, max: f64, unit: &str) -> Result<()> {
+    if value > 0.0 && value <= max {
+        return Ok(());
+    }
+    Err(Error::refuse(key, format!("{value:?}"), &format!("above 0 to {max:e}{unit}")))
+}
+
+/// Refuses a vector with a component beyond `max` in size.
+pub(crate) fn vector(key: &str, value: &[f64], max: f64, unit: &str) -> Result<()> {
+    let accepted = format!("-{max:e} to {max:e}{unit}");
+    for (axis, &component) in value.iter().enumerate() {
+        within(&format!("{key}.{axis}"), component, &(-max..=max), &accepted)?;
+    }
+    Ok(())
+}
+
+/// Refuses a frame number that Blender would not take.
+pub(crate) fn frame(key: &str, value: i32) -> Result<()> {
+    if (-MAX_FRAME..=MAX_FRAME).contains(&value) {
+        return Ok(());
+    }
+    Err(Error::refuse(key, value, &format!("-{MAX_FRAME} to {MAX_FRAME}")))
+}
+
+/// Refuses more vertices than a scene may have.
+pub(crate) fn vertices(key: &str, count: u64) -> Result<()> {
+    if count <= MAX_VERTICES as u64 {
+        return Ok(());
+    }
+    Err(Error::input(format!("{key}: {count} vertices; accepted: at most {MAX_VERTICES} a scene")))
+}
+
+/// Refuses more worker threads than make sense.
+///
+/// # Errors
+/// [`Error::Input`] above [`MAX_THREADS`].
+pub fn threads(count: usize) -> Result<()> {
+    if count <= MAX_THREADS {
+        return Ok(());
+    }
+    Err(Error::refuse("threads", count, "1 to 1024, or 0 for every core"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nan_and_infinity_are_outside_every_range() {
+        for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(within("key", value, &(f64::MIN..=f64::MAX), "a number").is_err());
+            assert!(above_zero("key", value, f64::MAX, "").is_err());
+            assert!(vector("key", &[0.0, value], 1.0, "").is_err());
+        }
+    }
+
+    #[test]
+    fn a_refused_component_is_named_by_its_index() {
+        let error =
+            vector("scene.gravity", &[0.0, 2e9, 0.0], MAX_GRAVITY, " m/s²").expect_err("large");
+        assert_eq!(error.to_string(), "scene.gravity.1 = 2000000000.0; accepted: -1e6 to 1e6 m/s²");
+    }
+}

@@ -1,0 +1,240 @@
+//! Wavefront OBJ: rest meshes in and out.
+//!
+//! Of the format, vertices (`v x y z`, further numbers ignored) and faces (`f`, corners as `v`, `v/vt`, `v//vn`, `v/vt/vn`,
+//! counted from 1, or backwards from -1) are read; names, groups, materials, texture coordinates, normals, lines and points
+//! are passed over; anything else is refused with its line. The order of vertices is the file's.
+//!
+//! Our own reader, because no crate keeps n-gons and the vertex order and names the line that it refuses.
+
+use std::io::{BufRead, Read, Write};
+
+use boucle_geometry::{Mesh, MeshError, Vector};
+
+use crate::description::UpAxis;
+use crate::error::{Error, Result, shorten};
+use crate::limits::{MAX_LENGTH, MAX_VERTICES};
+
+/// Longest line (bytes).
+const MAX_LINE: u64 = 1 << 20;
+/// Most corners of all faces together.
+const MAX_CORNERS: usize = 8 * MAX_VERTICES;
+/// Statements that say nothing about the shape of the cloth.
+const PASSED_OVER: [&str; 14] = [
+    "vt", "vn", "vp", "g", "o", "s", "mg", "usemtl", "mtllib", "l", "p", "usemap", "maplib", "lod",
+];
+
+/// Reads a mesh: its faces and its rest positions (m), Z up.
+///
+/// # Errors
+/// [`Error::Input`] naming the line, the vertex or the face that is not accepted.
+pub fn read(source: impl BufRead, up: UpAxis) -> Result<(Mesh, Vec<Vector>)> {
+    let mut reader = Reader { face_starts: vec![0], ..Reader::default() };
+    let mut lines = Lines { source, number: 0 };
+    while let Some(line) = lines.next_statement()? {
+        let number = lines.number;
+        reader
+            .statement(&line, number)
+            .map_err(|reason| Error::input(format!("line {number}: {reason}")))?;
+    }
+    if let UpAxis::Y = up {
+        reader.positions.iter_mut().for_each(|v| *v = Vector::new(v.x, -v.z, v.y));
+    }
+    reader.finish()
+}
+
+/// Writes a mesh so that reading it gives the same bits.
+///
+/// # Errors
+/// Those of the sink.
+pub fn write(sink: &mut impl Write, mesh: &Mesh, positions: &[Vector]) -> std::io::Result<()> {
+    for v in positions {
+        writeln!(sink, "v {} {} {}", v.x, v.y, v.z)?;
+    }
+    for face in mesh.faces() {
+        write!(sink, "f")?;
+        for vertex in face {
+            write!(sink, " {}", vertex + 1)?;
+        }
+        writeln!(sink)?;
+    }
+    Ok(())
+}
+
+/// The lines of a file, each checked for its length and for UTF-8.
+struct Lines<S> {
+    source: S,
+    number: usize,
+}
+
+impl<S: BufRead> Lines<S> {
+    /// The next line, joined with those it continues on by a backslash at its end.
+    fn next_statement(&mut self) -> Result<Option<String>> {
+        let mut statement = String::new();
+        while let Some(line) = self.next_line()? {
+            let line = line.trim_end();
+            match line.strip_suffix('\\') {
+                Some(part) if statement.len() as u64 <= MAX_LINE => {
+                    statement.push_str(part);
+                    statement.push(' ');
+                }
+                _ => {
+                    statement.push_str(line);
+                    return Ok(Some(statement));
+                }
+            }
+        }
+        Ok(if statement.is_empty() { None } else { Some(statement) })
+    }
+
+    fn next_line(&mut self) -> Result<Option<String>> {
+        let mut bytes = Vec::new();
+        self.number += 1;
+        let number = self.number;
+        let read = self.source.by_ref().take(MAX_LINE + 1).read_until(b'\n', &mut bytes);
+        let count = read.map_err(|error| Error::input(format!("line {number}: {error}")))?;
+        if count as u64 > MAX_LINE {
+            let accepted = format!("at most {MAX_LINE} bytes; is this an OBJ file?");
+            return Err(Error::input(format!("line {number} is too long; accepted: {accepted}")));
+        }
+        if count == 0 {
+            return Ok(None);
+        }
+        let refuse = |_| Error::input(format!("line {number} is not UTF-8; accepted: OBJ text"));
+        String::from_utf8(bytes).map(Some).map_err(refuse)
+    }
+}
+
+/// What has been read so far.
+#[derive(Default)]
+struct Reader {
+    positions: Vec<Vector>,
+    /// The line of each vertex.
+    lines: Vec<u32>,
+    face_starts: Vec<u32>,
+    corners: Vec<u32>,
+    /// The line of each face.
+    face_lines: Vec<u32>,
+}
+
+impl Reader {
+    fn statement(&mut self, line: &str, number: usize) -> std::result::Result<(), String> {
+        let line = line.split('#').next().unwrap_or_default();
+        let mut words = line.split_whitespace();
+        match words.next() {
+            None => Ok(()),
+            Some("v") => self.vertex(words, number),
+            Some("f") => self.face(words, number),
+            Some(word) if PASSED_OVER.contains(&word) => Ok(()),
+            Some(word) => Err(format!(
+                "\"{}\" is no OBJ statement that is accepted (v, f, vt, vn, g, o, s, usemtl, mtllib)",
+                shorten(word)
+            )),
+        }
+    }
+
+    fn vertex<'a>(
+        &mut self,
+        words: impl Iterator<Item = &'a str>,
+        number: usize,
+    ) -> std::result::Result<(), String> {
+        if self.positions.len() == MAX_VERTICES {
+            return Err(format!("more than {MAX_VERTICES} vertices; accepted: at most so many"));
+        }
+        let mut position = [0.0; 3];
+        let mut count = 0;
+        for word in words {
+            let value: f64 =
+                word.parse().map_err(|_| format!("\"{}\" is not a number", shorten(word)))?;
+            if !(-MAX_LENGTH..=MAX_LENGTH).contains(&value) {
+                let accepted = format!("-{MAX_LENGTH:e} to {MAX_LENGTH:e} m");
+                return Err(format!("coordinate {}; accepted: {accepted}", shorten(word)));
+            }
+            if count < 3 {
+                position[count] = value;
+            }
+            count += 1;
+        }
+        if count < 3 {
+            return Err(format!("a vertex with {count} coordinates; accepted: 3"));
+        }
+        self.positions.push(Vector::from(position));
+        self.lines.push(number as u32);
+        Ok(())
+    }
+
+    fn face<'a>(
+        &mut self,
+        words: impl Iterator<Item = &'a str>,
+        number: usize,
+    ) -> std::result::Result<(), String> {
+        let start = self.corners.len();
+        for word in words {
+            self.corners.push(self.corner(word)?);
+        }
+        let count = self.corners.len() - start;
+        if count < 3 {
+            return Err(format!("a face with {count} corners; accepted: 3 or more"));
+        }
+        if self.corners.len() > MAX_CORNERS {
+            return Err(format!("more than {MAX_CORNERS} face corners; accepted: at most so many"));
+        }
+        self.face_starts.push(self.corners.len() as u32);
+        self.face_lines.push(number as u32);
+        Ok(())
+    }
+
+    /// The vertex, from 0, of a corner such as `7`, `-1`, `7/2`, `7//3` or `7/2/3`.
+    fn corner(&self, word: &str) -> std::result::Result<u32, String> {
+        let shown = shorten(word);
+        let mut parts = word.split('/');
+        let index: i64 = parts
+            .next()
+            .and_then(|part| part.parse().ok())
+            .ok_or_else(|| format!("corner \"{shown}\"; accepted: v, v/vt, v//vn or v/vt/vn"))?;
+        let others_fit = parts.clone().count() <= 2
+            && parts.all(|part| part.is_empty() || part.parse::<i64>().is_ok());
+        if !others_fit {
+            return Err(format!("corner \"{shown}\"; accepted: v, v/vt, v//vn or v/vt/vn"));
+        }
+        let count = self.positions.len();
+        let distance = usize::try_from(index.unsigned_abs()).unwrap_or(usize::MAX);
+        let vertex = if index < 0 { count.checked_sub(distance) } else { distance.checked_sub(1) };
+        match vertex {
+            Some(vertex) if vertex < count => Ok(vertex as u32),
+            _ => Err(format!(
+                "corner \"{shown}\" with {count} vertices before it; accepted: 1 to {count}, or -1 \
+                 to -{count}"
+            )),
+        }
+    }
+
+    fn finish(self) -> Result<(Mesh, Vec<Vector>)> {
+        if self.positions.is_empty() {
+            return Err(Error::input("there are no vertices; accepted: an OBJ file with v and f"));
+        }
+        if self.face_lines.is_empty() {
+            return Err(Error::input("there are no faces; accepted: an OBJ file with v and f"));
+        }
+        let mesh = Mesh::new(self.positions.len(), self.face_starts, self.corners);
+        let mesh = mesh.map_err(|error| match error {
+            MeshError::RepeatedVertex { face, vertex } => Error::input(format!(
+                "line {}: the face passes through vertex {} twice; accepted: faces without holes \
+                 or repeated corners",
+                self.face_lines[face],
+                vertex + 1
+            )),
+            other => Error::input(other),
+        })?;
+        if let Some(&vertex) = mesh.loose_vertices().first() {
+            let line = self.lines[vertex as usize];
+            return Err(Error::input(format!(
+                "vertex {vertex} (from 0; line {line}) is used by no face; accepted: vertices of \
+                 faces"
+            )));
+        }
+        Ok((mesh, self.positions))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,98 @@
+use super::*;
+
+fn read_text(text: &str) -> Result<(Mesh, Vec<Vector>)> {
+    read(text.as_bytes(), UpAxis::Z)
+}
+
+const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+#[test]
+fn triangles_quads_and_polygons_are_read_in_the_order_of_the_file() {
+    let text = format!("# made by hand\no flag\n{SQUARE}v 2 0.5 0\ns off\nf 1 2 3 4\nf 2 5 3\n");
+    let (mesh, positions) = read_text(&text).expect("a good file");
+    assert_eq!(mesh.faces().collect::<Vec<_>>(), [&[0, 1, 2, 3][..], &[1, 4, 2]]);
+    assert_eq!(positions[4], Vector::new(2.0, 0.5, 0.0));
+    let (mesh, _) = read_text(&format!("{SQUARE}v -1 0.5 0\nf 1 2 3 4 5")).expect("a pentagon");
+    assert_eq!(mesh.face(0), [0, 1, 2, 3, 4]);
+}
+
+#[test]
+fn every_form_of_a_corner_names_its_vertex() {
+    for face in
+        ["1 2 3 4", "-4 -3 -2 -1", "1/1 2/2 3/3 4/4", "1//1 2//1 3//1 4//1", "1/1/1 2/ 3// 4"]
+    {
+        let text = format!("{SQUARE}vt 0 0\nvn 0 0 1\nf {face}\n");
+        assert_eq!(read_text(&text).expect(face).0.face(0), [0, 1, 2, 3], "{face}");
+    }
+}
+
+#[test]
+fn a_backslash_continues_a_line_and_windows_line_ends_are_taken() {
+    let text = format!("{SQUARE}f 1 2 \\\n3 4\n").replace('\n', "\r\n");
+    assert_eq!(read_text(&text).expect("a good file").0.face(0), [0, 1, 2, 3]);
+}
+
+#[test]
+fn vertex_colours_are_passed_over() {
+    let (_, positions) =
+        read_text("v 0 0 0 0.1 0.2 0.3\nv 1 0 0\nv 0 1 0 1.0\nf 1 2 3").expect("a good file");
+    assert_eq!(positions[2], Vector::y());
+}
+
+#[test]
+fn y_up_is_turned_to_z_up() {
+    let text = "v 1 2 3\nv 0 0 0\nv 0 1 0\nf 1 2 3";
+    let (_, positions) = read(text.as_bytes(), UpAxis::Y).expect("a good file");
+    assert_eq!(positions[0], Vector::new(1.0, -3.0, 2.0));
+    assert_eq!(positions[2], Vector::z());
+}
+
+#[test]
+fn what_is_written_reads_back_to_the_same_bits() {
+    let text =
+        "v 0.1 -2.5e-7 1e5\nv 0.333333333333333314 0 0\nv 7 1 0\nv 9 9 9\nf 4 1 2 3\nf 1 2 3";
+    let (mesh, positions) = read_text(text).expect("a good file");
+    let mut bytes = Vec::new();
+    write(&mut bytes, &mesh, &positions).expect("memory has room");
+    assert_eq!(read(bytes.as_slice(), UpAxis::Z).expect("our own file"), (mesh, positions));
+}
+
+#[test]
+fn what_is_wrong_is_refused_with_its_line() {
+    let table = [
+        ("", "no vertices"),
+        (SQUARE, "no faces"),
+        ("v 0 0\n", "line 1: a vertex with 2 coordinates"),
+        ("v 0 0 x\n", "line 1: \"x\" is not a number"),
+        ("v 0 0 nan\n", "line 1: coordinate nan"),
+        ("v 0 0 inf\n", "line 1: coordinate inf"),
+        ("v 0 0 1e300\n", "line 1: coordinate 1e300"),
+        ("\nhello world\n", "line 2: \"hello\" is no OBJ statement"),
+        ("v 0 0 0\nv 1 0 0\nf 1 2\n", "line 3: a face with 2 corners"),
+        ("v 0 0 0\nv 1 0 0\nf 1 2 3\n", "line 3: corner \"3\" with 2 vertices"),
+        ("v 0 0 0\nv 1 0 0\nf 1 2 0\n", "line 3: corner \"0\""),
+        ("v 0 0 0\nv 1 0 0\nf 1 2 -3\n", "line 3: corner \"-3\""),
+        ("v 0 0 0\nv 1 0 0\nf 1 2 9223372036854775808\n", "line 3: corner"),
+        ("v 0 0 0\nf 1 1.5 2\n", "line 2: corner \"1.5\""),
+        ("v 0 0 0\nf 1/a 1 1\n", "line 2: corner \"1/a\""),
+        ("v 0 0 0\nf 1/1/1/1 1 1\n", "line 2: corner \"1/1/1/1\""),
+        ("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n", "vertex 3 (from 0; line 4)"),
+        (
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3 2\n",
+            "line 4: the face passes through vertex 2 twice",
+        ),
+    ];
+    for (text, expected) in table {
+        let error = read_text(text).expect_err(expected).to_string();
+        assert!(error.contains(expected), "{error} for {text:?}");
+    }
+}
+
+#[test]
+fn bytes_that_are_no_text_are_refused_with_their_line() {
+    let error = read(&b"v 0 0 0\n\xff\xfe\n"[..], UpAxis::Z).expect_err("no UTF-8").to_string();
+    assert!(error.contains("line 2 is not UTF-8"), "{error}");
+    let endless = std::io::BufReader::new(std::io::repeat(b'v'));
+    let error = read(endless, UpAxis::Z).expect_err("no end").to_string();
+    assert!(error.contains("line 1 is too long"), "{error}");
+}

@@ -1,0 +1,264 @@
+//! report.json: what was baked, and the certificate of every frame.
+//!
+//! Strict JSON (a number that is not finite is null), replaced whole after every frame. The rows are kept as text, so that a
+//! long bake does not write its numbers again and again, and a resumed one keeps them to the letter.
+
+use std::path::Path;
+
+use boucle_solver::{Certificate, Cloth};
+use serde::Serialize;
+
+use crate::atomic::{self, Durability};
+use crate::error::Result;
+
+/// A cloth of the report.
+#[derive(Clone, Debug, Serialize)]
+pub struct ClothRow {
+    /// Its name.
+    pub name: String,
+    /// How many vertices it has.
+    pub vertices: usize,
+    /// How many triangles its faces fall into.
+    pub triangles: usize,
+    /// How many springs hold it.
+    pub springs: usize,
+}
+
+impl From<&Cloth> for ClothRow {
+    fn from(cloth: &Cloth) -> Self {
+        Self {
+            name: cloth.name.clone(),
+            vertices: cloth.mesh.vertex_count(),
+            triangles: cloth.mesh.triangle_count(),
+            springs: cloth.springs.len(),
+        }
+    }
+}
+
+/// The certificate of a frame as the report has it.
+#[derive(Clone, Debug, Serialize)]
+pub struct FrameRow {
+    /// The frame.
+    pub frame: i32,
+    /// Wall-clock time (s) that it took.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
+    /// Steps that led here from the frame before.
+    pub substeps: u32,
+    /// Iterations of the linear solver.
+    pub iterations: u32,
+    /// Largest elongation `L/L0 - 1` of mesh edges.
+    pub max_strain: f64,
+    /// 99th percentile of the same.
+    pub p99_strain: f64,
+    /// Largest elongation of shear springs.
+    pub max_shear_strain: f64,
+    /// Edge-triangle intersections; null until contact exists.
+    pub intersections: Option<u64>,
+    /// Vertices whose motion contact cut short.
+    pub clipped: u32,
+    /// Kinetic energy (J).
+    pub kinetic_energy: f64,
+    /// Energy of springs and of height (J).
+    pub potential_energy: f64,
+    /// XXH3-64 over all positions (f64), 16 hexadecimal digits.
+    pub hash: String,
+}
+
+impl FrameRow {
+    /// A row from a certificate and the wall-clock time (s) of its frame.
+    #[must_use]
+    pub fn new(certificate: &Certificate, seconds: Option<f64>) -> Self {
+        Self {
+            frame: certificate.frame,
+            seconds,
+            substeps: certificate.substeps,
+            iterations: certificate.iterations,
+            max_strain: certificate.max_strain,
+            p99_strain: certificate.p99_strain,
+            max_shear_strain: certificate.max_shear_strain,
+            intersections: None,
+            clipped: certificate.clipped,
+            kinetic_energy: certificate.kinetic_energy,
+            potential_energy: certificate.potential_energy,
+            hash: format!("{:016x}", certificate.hash),
+        }
+    }
+
+    /// The row as JSON.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        json(self)
+    }
+}
+
+/// The report of a bake.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Everything above `frames`, as JSON members.
+    head: String,
+    rows: Vec<String>,
+    total_seconds: f64,
+}
+
+/// What stands above the rows.
+#[derive(Clone, Debug, Serialize)]
+pub struct Head<'a> {
+    /// The version of this program.
+    pub boucle: &'a str,
+    /// The scene file, as it was given.
+    pub scene: &'a str,
+    /// Worker threads.
+    pub threads: usize,
+    /// Which rule moved the particles.
+    pub integrator: &'a str,
+    /// What `hash` is.
+    pub hash_algorithm: &'a str,
+    /// Every cloth.
+    pub cloths: Vec<ClothRow>,
+}
+
+impl Report {
+    /// A report that goes on after the rows (JSON each) and the time (s) of an earlier part of the bake.
+    #[must_use]
+    pub fn new(head: &Head<'_>, rows: Vec<String>, total_seconds: f64) -> Self {
+        let head = json(head);
+        Self { head: head.strip_suffix('}').unwrap_or(&head).to_owned(), rows, total_seconds }
+    }
+
+    /// The rows so far, JSON each.
+    #[must_use]
+    pub fn rows(&self) -> &[String] {
+        &self.rows
+    }
+
+    /// Wall-clock time (s) so far.
+    #[must_use]
+    pub fn total_seconds(&self) -> f64 {
+        self.total_seconds
+    }
+
+    /// Adds a frame.
+    pub fn push(&mut self, row: &FrameRow) {
+        self.rows.push(row.to_json());
+    }
+
+    /// Takes the last frame back.
+    pub fn pop(&mut self) {
+        self.rows.pop();
+    }
+
+    /// Adds wall-clock time (s).
+    pub fn spend(&mut self, seconds: f64) {
+        self.total_seconds += seconds;
+    }
+
+    /// The whole report as JSON.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        let frames = self.rows.join(",\n");
+        let (seconds, memory) = (json(&self.total_seconds), json(&peak_memory_bytes()));
+        format!(
+            "{},\n\"frames\":[\n{frames}\n],\n\"total_seconds\":{seconds},\
+             \"peak_memory_bytes\":{memory}}}\n",
+            self.head
+        )
+    }
+
+    /// Replaces the report on disk.
+    ///
+    /// # Errors
+    /// [`Error::Cache`](crate::Error::Cache) when it cannot be written; the old one is then still there.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        atomic::replace(path, self.to_json().as_bytes(), Durability::Process)
+    }
+}
+
+/// JSON of what always has one: the rows above hold only numbers and text.
+fn json(value: &impl Serialize) -> String {
+    serde_json::to_string(value).unwrap_or_else(|_| "null".to_owned())
+}
+
+/// The most memory (bytes) that this process has held: the system's own figure on Linux, elsewhere what it holds now; null
+/// where neither can be asked.
+fn peak_memory_bytes() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kibibytes = peak.and_then(|text| text.trim().strip_suffix(" kB")?.parse::<u64>().ok());
+    let now = || memory_stats::memory_stats().map(|memory| memory.physical_mem as u64);
+    kibibytes.map(|count| count << 10).or_else(now)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn certificate(frame: i32) -> Certificate {
+        Certificate {
+            frame,
+            substeps: 4,
+            iterations: 0,
+            max_strain: 0.1,
+            p99_strain: f64::NAN,
+            max_shear_strain: 0.0,
+            clipped: 0,
+            kinetic_energy: 1.5,
+            potential_energy: -2.0,
+            hash: 0xab,
+        }
+    }
+
+    fn report() -> Report {
+        let head = Head {
+            boucle: "0.1.0",
+            scene: "a \"b\".toml",
+            threads: 2,
+            integrator: "verlet",
+            hash_algorithm: "xxh3-64",
+            cloths: vec![ClothRow { name: "}".into(), vertices: 4, triangles: 2, springs: 6 }],
+        };
+        Report::new(&head, Vec::new(), 1.0)
+    }
+
+    #[test]
+    fn a_report_is_strict_json_with_and_without_frames() {
+        let mut report = report();
+        for count in 0..3 {
+            let value: serde_json::Value =
+                serde_json::from_str(&report.to_json()).expect("strict JSON");
+            assert_eq!(value["frames"].as_array().map(Vec::len), Some(count));
+            assert_eq!(value["cloths"][0]["name"], "}");
+            assert_eq!(value["scene"], "a \"b\".toml");
+            assert!(value["peak_memory_bytes"].as_u64().is_some_and(|bytes| bytes > 1 << 20));
+            report.push(&FrameRow::new(&certificate(1), Some(0.25)));
+        }
+    }
+
+    #[test]
+    fn a_row_has_the_keys_of_the_contract() {
+        let row = FrameRow::new(&certificate(7), Some(0.25)).to_json();
+        let value: serde_json::Value = serde_json::from_str(&row).expect("strict JSON");
+        assert_eq!(value["hash"], "00000000000000ab");
+        assert!(value["intersections"].is_null() && value["p99_strain"].is_null());
+        let keys: Vec<&str> =
+            value.as_object().expect("a row").keys().map(String::as_str).collect();
+        let mut expected = [
+            "frame",
+            "seconds",
+            "substeps",
+            "iterations",
+            "max_strain",
+            "p99_strain",
+            "max_shear_strain",
+            "intersections",
+            "clipped",
+            "kinetic_energy",
+            "potential_energy",
+            "hash",
+        ];
+        expected.sort_unstable();
+        assert_eq!(keys, expected);
+        let row = FrameRow::new(&certificate(7), None).to_json();
+        assert!(!row.contains("seconds"));
+    }
+}

@@ -1,0 +1,87 @@
+//! Scene files and the mesh files beside them.
+
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use crate::assembly::RestMesh;
+use crate::description::{ClothDescription, Scene};
+use crate::error::{Error, Result};
+use crate::limits;
+use crate::obj;
+
+/// Reads a scene file, changed by overrides (`key.path=value`).
+///
+/// # Errors
+/// [`Error::Input`] naming the file, the key and the value.
+pub fn read_scene(path: &Path, overrides: &[String]) -> Result<Scene> {
+    let place = path.display().to_string();
+    let text = read_text(path).map_err(|error| error.within(&place))?;
+    Scene::from_toml(&text, overrides).map_err(|error| error.within(&place))
+}
+
+/// Reads or makes the rest mesh of every cloth; mesh files are looked for in `folder`, that of the scene file.
+///
+/// # Errors
+/// [`Error::Input`] naming the key, the file and the line.
+pub fn rest_meshes(scene: &Scene, folder: &Path) -> Result<Vec<RestMesh>> {
+    let grids = scene.cloth.iter().filter_map(|cloth| cloth.grid.as_ref());
+    let mut count =
+        grids.map(|grid| u64::from(grid.vertices[0]) * u64::from(grid.vertices[1])).sum();
+    limits::vertices("the grids together", count)?;
+    let mut meshes = Vec::with_capacity(scene.cloth.len());
+    for cloth in &scene.cloth {
+        let mut rest = rest_mesh(cloth, folder)?;
+        if rest.grid.is_none() {
+            count += rest.positions.len() as u64;
+            limits::vertices("the cloths together", count)?;
+        }
+        cloth.transform.place(&mut rest.positions);
+        meshes.push(rest);
+    }
+    Ok(meshes)
+}
+
+fn rest_mesh(cloth: &ClothDescription, folder: &Path) -> Result<RestMesh> {
+    let at = format!("cloth.{}", cloth.name);
+    if let Some(grid) = &cloth.grid {
+        let mesh = grid.mesh().map_err(|error| Error::input(format!("{at}.grid: {error}")))?;
+        return Ok(RestMesh { mesh, positions: grid.positions(), grid: Some(grid.clone()) });
+    }
+    let Some(name) = &cloth.mesh else {
+        return Err(Error::input(format!("{at}.grid is missing; accepted: it or mesh")));
+    };
+    let place = format!("{at}.mesh = \"{name}\"");
+    let file = open(&folder.join(name)).map_err(|error| error.within(&place))?;
+    let (mesh, positions) =
+        obj::read(BufReader::new(file), cloth.up).map_err(|error| error.within(&place))?;
+    Ok(RestMesh { mesh, positions, grid: None })
+}
+
+/// Opens a file that is to be read; a folder is refused.
+fn open(path: &Path) -> Result<File> {
+    let refuse = |reason: &str| {
+        let accepted = "accepted: the path of a file that can be read";
+        Error::input(format!("it cannot be read: {reason}; {accepted}"))
+    };
+    let file = File::open(path).map_err(|error| refuse(&error.to_string()))?;
+    let metadata = file.metadata().map_err(|error| refuse(&error.to_string()))?;
+    if metadata.is_dir() { Err(refuse("it is a folder")) } else { Ok(file) }
+}
+
+fn read_text(path: &Path) -> Result<String> {
+    let mut bytes = Vec::new();
+    open(path)?
+        .take(limits::MAX_SCENE_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| Error::input(format!("it cannot be read: {error}")))?;
+    if bytes.len() as u64 > limits::MAX_SCENE_BYTES {
+        let accepted = format!("at most {} bytes", limits::MAX_SCENE_BYTES);
+        return Err(Error::input(format!("it is too long; accepted: {accepted}")));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let start = error.utf8_error().valid_up_to();
+        let line = error.as_bytes()[..start].split(|&byte| byte == b'\n').count();
+        Error::input(format!("line {line} is not UTF-8; accepted: TOML text"))
+    })
+}

@@ -39,6 +39,8 @@ class Session:
     display: display.Display
     basis: tuple[object, ...]
     """What must not change while the session lives."""
+    waits: str = ""
+    """Why the cloth does not move on at the present frame; empty if it does."""
 
 
 _sessions: dict[int, Session] = {}
@@ -79,10 +81,9 @@ def _come_to_frame(
         if session is None:
             return
     action = session.frames.action(frame, scene.frame_subframe, obj.boucle.frame_end)
+    session.waits = _explain(session, action)
     if action is Action.STEP:
         _step(session, obj, depsgraph)
-    elif action in (Action.WAIT, Action.FULL):
-        _explain(session, obj, action)
     if action is not Action.IGNORE:
         session.display.show(obj, session.frames, frame)
 
@@ -181,16 +182,19 @@ def _read(session: Session, to_object: points.Affine, vertex_count: int) -> Poin
     return points.transform(world, to_object, "f")
 
 
-def _explain(session: Session, obj: bpy.types.Object, action: Action) -> None:
+def _explain(session: Session, action: Action) -> str:
     last = session.frames.last
     if action is Action.FULL:
-        text = f"the live frames fill their memory at frame {last}: bake, or raise the limit in the add-on's preferences"
-    else:
-        text = (
+        return (
+            f"the live frames fill their memory at frame {last}: bake, or raise the limit in the "
+            "add-on's preferences"
+        )
+    if action is Action.WAIT:
+        return (
             f"frame {last + 1} was skipped: the cloth waits at frame {last}, play on from there "
             "with Sync set to Play Every Frame"
         )
-    runtime.messages[obj.session_uid] = f'"{obj.name}": {text}'
+    return ""
 
 
 def _say(obj: bpy.types.Object, text: str) -> None:
@@ -280,4 +284,5 @@ def status(obj: bpy.types.Object) -> str:
     if session is None:
         return f"Not baked: play from frame {obj.boucle.frame_start} to see it move"
     frames = session.frames
-    return f"Live: frames {frames.first} to {frames.last} in memory, {size(frames.size_bytes)}"
+    text = f"Live: frames {frames.first} to {frames.last} in memory, {size(frames.size_bytes)}"
+    return f"{text}; {session.waits}" if session.waits else text

@@ -8,7 +8,7 @@ import bmesh
 import bpy
 
 from .. import native
-from ..core import mesh_check, scene_json
+from ..core import mesh_check, points, scene_json
 from ..core.mesh_check import Problem, Severity
 from ..core.refusal import Refusal
 from . import cache, mesh_arrays, rest, sampling, settings, slot
@@ -60,16 +60,20 @@ def _errors(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
     if mesh.is_editmode:
         yield _error(f'"{obj.name}" is in Edit Mode: leave it first')
         return
+    matrix = mesh_arrays.world_matrix(obj)
     faces = mesh_arrays.topology(mesh)
     for problem in mesh_check.check(
-        rest.positions(mesh), faces.starts, faces.corners, mesh_arrays.edges(mesh)
+        points.transform(rest.positions(mesh), matrix, "d"),
+        faces.starts,
+        faces.corners,
+        mesh_arrays.edges(mesh),
     ):
         yield problem._replace(sentence=f'"{obj.name}": {problem.sentence}')
     try:
+        sampling.inverse(obj, matrix)
         scene_json.describe(
             obj.name, settings.values(obj), settings.world(scene), settings.groups(obj)
         )
-        sampling.inverse(obj, mesh_arrays.world_matrix(obj))
     except Refusal as refusal:
         yield _error(str(refusal))
     yield from _stack_errors(obj)

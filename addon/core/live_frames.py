@@ -47,11 +47,9 @@ class LiveFrames:
             return Action.IGNORE
         if frame <= self.last or frame > end:
             return Action.SHOW
-        if frame > self.last + 1:
-            return Action.WAIT
         if self.size_bytes + self._frame_bytes > self._limit_bytes:
             return Action.FULL
-        return Action.STEP
+        return Action.STEP if frame == self.last + 1 else Action.WAIT
 
     def add(self, positions: Points) -> None:
         """Keep the frame after the last."""

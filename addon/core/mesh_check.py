@@ -23,8 +23,10 @@ class Problem(NamedTuple):
     vertices: Sequence[int] = ()
 
 
-RELATIVE_AREA = 1e-10
-"""A face below this part of its longest edge squared counts as flat: float32 positions carry no smaller area."""
+SMALLEST_AREA = 1e-18
+"""Area (m²) of a face that the solver still accepts."""
+SHORTEST_EDGE = 1e-9
+"""Length (m) of an edge that the solver still accepts."""
 
 
 def check(
@@ -33,7 +35,7 @@ def check(
     """The problems of a mesh.
 
     Args:
-        positions: x, y, z of each vertex (m), flat.
+        positions: x, y, z of each vertex (m, world space), flat.
         starts: First corner of each face.
         corners: Vertex of each corner.
         ends: The two vertices of each edge, flat.
@@ -44,16 +46,16 @@ def check(
     values = [float(value) for value in positions]
     broken = [v for v in range(count) if not all(map(math.isfinite, values[3 * v : 3 * v + 3]))]
     if broken:
-        return [_counted(broken, "vertex", "with a position that is no number", "delete or move")]
+        return [_counted(broken, "with a position that is no number", "delete or move")]
     problems = [
-        _counted(_loose(count, corners), "vertex", "that no face uses", "delete"),
-        _counted(_short_edges(values, ends), "vertex", "on edges of no length", "merge"),
-        _counted(_flat_faces(values, starts, corners), "vertex", "on faces of no area", "dissolve"),
+        _counted(_loose(count, corners), "that no face uses", "delete"),
+        _counted(_short_edges(values, ends), "on edges of no length", "merge"),
+        _counted(_flat_faces(values, starts, corners), "on faces of no area", "dissolve"),
     ]
     found = [problem for problem in problems if problem is not None]
     doubles = _doubles(values)
     if doubles and not found:
-        sentence = _sentence(doubles, "vertex", "lying on another one", "merge them by distance")
+        sentence = _sentence(doubles, "lying on another one", "merge them by distance")
         found.append(Problem(Severity.WARNING, sentence, doubles))
     return found
 
@@ -62,17 +64,17 @@ def _error(sentence: str, vertices: Sequence[int]) -> Problem:
     return Problem(Severity.ERROR, sentence, vertices)
 
 
-def _counted(vertices: Sequence[int], noun: str, what: str, cure: str) -> Problem | None:
+def _counted(vertices: Sequence[int], what: str, cure: str) -> Problem | None:
     if not vertices:
         return None
-    return _error(_sentence(vertices, noun, what, f"{cure} them"), vertices)
+    return _error(_sentence(vertices, what, f"{cure} them"), vertices)
 
 
-def _sentence(vertices: Sequence[int], noun: str, what: str, cure: str) -> str:
+def _sentence(vertices: Sequence[int], what: str, cure: str) -> str:
     numbers = ", ".join(str(vertex) for vertex in vertices[:5])
     more = ", ..." if len(vertices) > 5 else ""
-    plural = {"vertex": "vertices"}[noun] if len(vertices) != 1 else noun
-    return f"{len(vertices)} {plural} {what} ({numbers}{more}): {cure}"
+    noun = "vertices" if len(vertices) != 1 else "vertex"
+    return f"{len(vertices)} {noun} {what} ({numbers}{more}): {cure}"
 
 
 def _loose(count: int, corners: Sequence[int]) -> list[int]:
@@ -86,7 +88,7 @@ def _short_edges(values: list[float], ends: Sequence[int]) -> list[int]:
     found: set[int] = set()
     for k in range(0, len(ends), 2):
         i, j = int(ends[k]), int(ends[k + 1])
-        if values[3 * i : 3 * i + 3] == values[3 * j : 3 * j + 3]:
+        if math.dist(values[3 * i : 3 * i + 3], values[3 * j : 3 * j + 3]) < SHORTEST_EDGE:
             found |= {i, j}
     return sorted(found)
 
@@ -102,7 +104,7 @@ def _flat_faces(values: list[float], starts: Sequence[int], corners: Sequence[in
 
 
 def _is_flat(ring: list[list[float]]) -> bool:
-    x = y = z = longest_squared = 0.0
+    x = y = z = 0.0
     ox, oy, oz = ring[0]
     px, py, pz = (a - b for a, b in zip(ring[-1], ring[0], strict=True))
     for point in ring:
@@ -110,10 +112,8 @@ def _is_flat(ring: list[list[float]]) -> bool:
         x += py * qz - pz * qy
         y += pz * qx - px * qz
         z += px * qy - py * qx
-        length = (qx - px) ** 2 + (qy - py) ** 2 + (qz - pz) ** 2
-        longest_squared = max(longest_squared, length)
         px, py, pz = qx, qy, qz
-    return 0.5 * math.sqrt(x * x + y * y + z * z) <= RELATIVE_AREA * longest_squared
+    return not 0.5 * math.sqrt(x * x + y * y + z * z) > SMALLEST_AREA
 
 
 def _doubles(values: list[float]) -> list[int]:

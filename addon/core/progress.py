@@ -23,5 +23,5 @@ def duration(seconds: float) -> str:
 
 
 def size(count: int) -> str:
-    """A number of bytes: "12.3 MB"."""
-    return f"{count / 1e6:.1f} MB"
+    """A number of bytes: "12.3 MB" or "4.5 kB"."""
+    return f"{count / 1e6:.1f} MB" if count >= 1_000_000 else f"{count / 1e3:.1f} kB"

@@ -38,7 +38,7 @@ def main():
 
 try:
     main()
-except BaseException:
+except BaseException:  # noqa: BLE001 (the parent reads the traceback and the exit code)
     traceback.print_exc()
     sys.stdout.flush()
     sys.stderr.flush()

@@ -92,8 +92,9 @@ class Blender:
             timeout=SECONDS,
             check=False,
         )
-        self.output = done.stdout + done.stderr
-        assert done.returncode == 0, f"exit {done.returncode}\n{self.output}"
+        lines = (done.stdout + done.stderr).splitlines()
+        self.output = "\n".join(line for line in lines if not line.startswith("Fra:"))
+        assert done.returncode == 0, f"exit {done.returncode}\n{self.output[-4000:]}"
         return json.loads(result.read_text())
 
 

@@ -1,0 +1,261 @@
+"""The settings, their panels and the add-on's registration."""
+
+DESIGN_NAMES = {
+    "enabled", "stretch", "shear", "bend", "damping", "damping_law", "deformation_rate", "limiter",
+    "density", "mass_per_vertex", "mass_mode", "pin_group", "integrator", "substeps", "frame_start",
+    "frame_end",
+}  # fmt: skip
+
+
+def walk_settings():
+    import bpy
+
+    pointer = bpy.types.Object.bl_rna.properties["boucle"]
+    rows = []
+    for prop in pointer.fixed_type.properties:
+        if prop.identifier in {"rna_type", "name"}:
+            continue
+        is_number = prop.type in {"INT", "FLOAT"}
+        rows.append(
+            {
+                "name": prop.identifier,
+                "overridable": prop.is_overridable,
+                "label": prop.name,
+                "description": prop.description,
+                "bounded": not is_number or (prop.hard_min > -3e38 and prop.hard_max < 3e38),
+            }
+        )
+    return {"pointer": pointer.is_overridable, "rows": rows}
+
+
+def test_every_setting_is_overridable_described_and_bounded(blender):
+    found = blender.run(walk_settings)
+    assert found["pointer"]
+    assert {row["name"] for row in found["rows"]} >= DESIGN_NAMES
+    for row in found["rows"]:
+        assert row["overridable"], row
+        assert row["label"] and row["description"], row
+        assert row["bounded"], row
+    units = {
+        "stretch": "(N/m)",
+        "damping": "(N·s/m)",
+        "density": "(kg/m²)",
+        "mass_per_vertex": "(kg)",
+    }
+    words = {row["name"]: row["description"] for row in found["rows"]}
+    for name, unit in units.items():
+        assert unit in words[name]
+
+
+class Layout:
+    """Takes the place of Blender's layout, which needs a window: it knows what was drawn and refuses wrong names."""
+
+    def __init__(self, drawn):
+        self.drawn = drawn
+
+    def _inner(self, **_):
+        return Layout(self.drawn)
+
+    column = row = box = split = _inner
+
+    def prop(self, data, name, **_):
+        assert name in data.bl_rna.properties, name
+        getattr(data, name)
+        self.drawn.append(name)
+
+    def prop_search(self, data, name, where, items, **_):
+        assert hasattr(where, items)
+        self.prop(data, name)
+
+    def operator(self, idname, **_):
+        import bpy
+
+        group, name = idname.split(".")
+        kind = getattr(getattr(bpy.ops, group), name).get_rna_type()
+        self.drawn.append(idname)
+
+        class Settings:
+            def __setattr__(self, key, value):
+                assert key in kind.properties, key
+
+        return Settings()
+
+    def label(self, text="", **_):
+        assert text, "an empty line"
+        self.drawn.append(text)
+
+
+def draw_everything():
+    import bpy
+    from cloths import add_cloth, addon
+
+    obj = add_cloth()
+    drawn = []
+
+    def draw_panels():
+        for name in dir(bpy.types):
+            if not name.startswith("BOUCLE_PT_"):
+                continue
+            kind = getattr(bpy.types, name)
+            assert kind.poll(bpy.context)
+
+            class Panel:
+                layout = Layout(drawn)
+                column = kind.column
+
+            kind.draw(Panel(), bpy.context)
+
+    draw_panels()
+    for name, value in {
+        "damping_per_kind": True,
+        "mass_mode": "vertex",
+        "use_wind": True,
+        "wind_law": "face",
+        "limiter": "none",
+    }.items():
+        setattr(obj.boucle, name, value)
+    bpy.ops.boucle.bake()
+    draw_panels()
+
+    class Any:
+        layout = Layout(drawn)
+
+    addon("panels.cloth").draw_button(Any(), bpy.context)
+    addon("operators.add").draw_menu(Any(), bpy.context)
+    preferences = bpy.context.preferences.addons["bl_ext.user_default.boucle"].preferences
+
+    class Preferences:
+        layout = Layout(drawn)
+        bl_rna = preferences.bl_rna
+        live_memory = preferences.live_memory
+
+    type(preferences).draw(Preferences(), bpy.context)
+    bpy.ops.mesh.primitive_plane_add()
+    polls = [
+        getattr(bpy.types, name).poll(bpy.context)
+        for name in dir(bpy.types)
+        if name.startswith("BOUCLE_PT_")
+    ]
+    addon("panels.cloth").draw_button(Any(), bpy.context)
+    return {"drawn": drawn, "polls": polls}
+
+
+def test_every_setting_is_drawn_and_the_safe_time_step_is_shown(blender):
+    result = blender.run(draw_everything)
+    drawn = result["drawn"]
+    assert set(drawn) >= DESIGN_NAMES - {"enabled"} | {
+        "damping_shear", "air_damping", "wind_velocity", "wind_air_density", "time_step",
+        "allow_unstable", "boucle.bake", "boucle.free_bake", "boucle.reset", "boucle.check",
+        "boucle.bake_all", "boucle.enable", "boucle.disable", "boucle.add_cloth", "live_memory",
+    }  # fmt: skip
+    assert any(line.startswith("Safe time step: ") and " ms" in line for line in drawn)
+    assert any(line.startswith("Baked: frames 1 to 20") for line in drawn)
+    assert not any(result["polls"])
+
+
+def switch_the_add_on():
+    import addon_utils
+    import bpy
+
+    module = "bl_ext.user_default.boucle"
+
+    def state():
+        handlers = [
+            function.__module__
+            for name in dir(bpy.app.handlers)
+            if isinstance(getattr(bpy.app.handlers, name), list)
+            for function in getattr(bpy.app.handlers, name)
+            if "boucle" in function.__module__
+        ]
+        return (
+            [name for name in dir(bpy.types) if name.startswith("BOUCLE_")],
+            hasattr(bpy.types.Object, "boucle"),
+            len(handlers),
+            len(bpy.types.VIEW3D_MT_mesh_add._dyn_ui_initialize()),
+            len(bpy.types.PHYSICS_PT_add._dyn_ui_initialize()),
+        )
+
+    on = state()
+    for _ in range(20):
+        addon_utils.disable(module)
+        off = state()
+        assert addon_utils.enable(module) is not None
+        assert state() == on
+    return {"on": on, "off": off}
+
+
+def test_the_add_on_can_be_switched_off_and_on_twenty_times(blender):
+    result = blender.run(switch_the_add_on)
+    assert result["off"][0] == []
+    assert result["off"][1:3] == [False, 0]
+    assert [a - b for a, b in zip(result["on"][3:], result["off"][3:], strict=True)] == [1, 1]
+
+
+def fail_to_register():
+    import sys
+
+    import addon_utils
+    import bpy
+    from cloths import addon
+
+    module = "bl_ext.user_default.boucle"
+    handlers, transaction = addon("handlers"), addon("core.transaction")
+    addon_utils.disable(module)
+    package = sys.modules[handlers.__package__]
+
+    def fail():
+        raise RuntimeError("on purpose")
+
+    package._STEPS = (*package._STEPS, transaction.Step(fail, fail))
+    said = ""
+    try:
+        package.register()
+    except RuntimeError as error:
+        said = str(error)
+    left = [name for name in dir(bpy.types) if name.startswith("BOUCLE_")]
+    listening = handlers.frame_change_post in bpy.app.handlers.frame_change_post
+    return [said, left, listening, hasattr(bpy.types.Object, "boucle")]
+
+
+def test_a_registration_that_fails_leaves_nothing_behind(blender):
+    assert blender.run(fail_to_register) == ["on purpose", [], False, False]
+
+
+def other_version():
+    import bpy
+    from cloths import addon, refusal_of
+
+    bpy.ops.boucle.add_cloth(vertices_x=4, vertices_y=4)
+    native = addon("native")
+    native._core.__dict__["__version__"] = "9.9.9"
+    native.problem.cache_clear()
+    can = bpy.ops.boucle.bake.poll()
+    return [native.problem(), can, refusal_of(bpy.ops.boucle.bake)]
+
+
+def test_another_version_of_the_compiled_module_is_named(blender):
+    sentence, can, said = blender.run(other_version)
+    assert "9.9.9" in sentence and "restart Blender" in sentence
+    assert not can
+    assert sentence in said
+
+
+def idle_handlers():
+    import bpy
+    from cloths import addon
+
+    registry = addon("bridge.registry")
+    bpy.ops.mesh.primitive_plane_add()
+    bpy.context.scene.frame_set(2)
+    looked = []
+    real = registry._look
+    registry._look = lambda: looked.append(1) or real()
+    live = addon("bridge.live")
+    live.on_frame = lambda *_: looked.append("live")
+    for frame in range(3, 30):
+        bpy.context.scene.frame_set(frame)
+    return looked
+
+
+def test_without_a_cloth_no_handler_does_any_work(blender):
+    assert blender.run(idle_handlers) == []

@@ -189,8 +189,13 @@ def sources_digest() -> str:
     return digest.hexdigest()
 
 
-def build_wheel(folder: Path, *options: str) -> Path:
+def build_wheel(folder: Path, *options: str, first_on_path: Path | None = None) -> Path:
     """Compile the module for release and pack it as the only wheel in `folder`.
+
+    Args:
+        folder: Emptied first.
+        options: More words for maturin.
+        first_on_path: Folder of programs that the compiler must find before others.
 
     Raises:
         Failed: The compiler refused, or the wheel is not for every Python from 3.11 on.
@@ -199,7 +204,8 @@ def build_wheel(folder: Path, *options: str) -> Path:
     python = venv_program(VENV, "python")
     command = [python, "-m", "maturin", "build", "--release", "--out", folder]
     command += ["--manifest-path", ROOT / "rust" / "python" / "Cargo.toml"]
-    run([*command, "--interpreter", python, *options])
+    path = os.pathsep.join(filter(None, [str(first_on_path or ""), os.environ.get("PATH", "")]))
+    run([*command, "--interpreter", python, *options], PATH=path)
     wheels = list(folder.glob("*.whl"))
     if len(wheels) != 1 or "-abi3-" not in wheels[0].name:
         raise Failed(f"expected one abi3 wheel, got {[wheel.name for wheel in wheels]}")

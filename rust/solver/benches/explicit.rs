@@ -1,6 +1,6 @@
 //! Time of the explicit kernel: nanoseconds for each spring, step and core, and the limiters' share.
 //!
-//! `cargo bench -p boucle-solver --bench explicit`
+//! `cargo bench -p boucle-solver --bench explicit [-- SIDE]`
 
 use std::time::Instant;
 
@@ -13,8 +13,13 @@ const SUBSTEPS: u32 = 200;
 const FRAMES: usize = 7;
 
 fn main() {
-    println!("{:>6} {:>8} {:>18} {:>8} {:>12} {:>14}", "side", "threads", "limiter", "damped", "us/step", "ns/spring/core");
-    for side in [32, 64, 128, 256] {
+    println!(
+        "{:>6} {:>8} {:>18} {:>8} {:>12} {:>14}",
+        "side", "threads", "limiter", "damped", "us/step", "ns/spring/core"
+    );
+    let only = std::env::args().skip(1).find_map(|argument| argument.parse::<u32>().ok());
+    for side in [32, 64, 128, 256].into_iter().filter(|&side| only.is_none_or(|only| only == side))
+    {
         for threads in [1, 2] {
             for (limiter, is_damped) in [
                 (Limiter::None, false),
@@ -47,18 +52,23 @@ fn row(side: u32, threads: usize, limiter: Limiter, is_damped: bool) {
     };
     let mut simulation =
         Simulation::new(vec![cloth], Vec::new(), settings).expect("the benchmark's own sheet");
-    let mut seconds: Vec<f64> = (0..FRAMES)
-        .map(|_| {
-            let start = Instant::now();
-            simulation.advance().expect("a stable sheet");
-            start.elapsed().as_secs_f64() / f64::from(SUBSTEPS)
-        })
-        .collect();
+    let mut seconds = Vec::new();
+    for _ in 0..FRAMES {
+        let start = Instant::now();
+        if let Err(error) = simulation.advance() {
+            println!("{side:>6} {threads:>8} {limiter:>18?} {is_damped:>8} {error}");
+            return;
+        }
+        seconds.push(start.elapsed().as_secs_f64() / f64::from(SUBSTEPS));
+    }
     seconds.sort_by(f64::total_cmp);
     let median = seconds[FRAMES / 2];
     let each = 1e9 * median * threads as f64 / springs as f64;
     let limiter = format!("{limiter:?}");
-    println!("{side:>6} {threads:>8} {limiter:>18} {is_damped:>8} {:>12.1} {each:>14.3}", 1e6 * median);
+    println!(
+        "{side:>6} {threads:>8} {limiter:>18} {is_damped:>8} {:>12.1} {each:>14.3}",
+        1e6 * median
+    );
 }
 
 /// A sheet of 2 m x 2 m and 0.2 kg/m², hung by two corners.

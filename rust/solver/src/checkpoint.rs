@@ -72,9 +72,8 @@ impl Checkpoint {
         }
         let mut state = State::default();
         for axis in state.position.0.iter_mut().chain(&mut state.velocity.0) {
-            *axis = (0..count)
-                .map(|_| reader.take().map(f64::from_le_bytes))
-                .collect::<Option<_>>()?;
+            *axis =
+                (0..count).map(|_| reader.take().map(f64::from_le_bytes)).collect::<Option<_>>()?;
         }
         let is_pinned = reader.0.iter().map(|&byte| byte != 0).collect();
         Some(Self { digest, frame, substeps, state, is_pinned })

@@ -65,7 +65,8 @@ impl Cloth {
         }
         let masses = masses_of(name, &mesh, &positions, mass)?;
         let springs = springs_of_mesh(&mesh, &positions, &material);
-        let cloth = Self { name: name.to_owned(), mesh, positions, springs, masses, pins, material };
+        let cloth =
+            Self { name: name.to_owned(), mesh, positions, springs, masses, pins, material };
         cloth.check()?;
         Ok(cloth)
     }
@@ -86,8 +87,9 @@ impl Cloth {
         let in_domain = |mass: f64| (1e-12..=1e9).contains(&mass);
         if let Some(vertex) = (0..count).find(|&vertex| !in_domain(self.masses[vertex])) {
             let mass = self.masses[vertex];
-            return self
-                .refuse(format!("vertex {vertex} has a mass of {mass} kg; accepted: 1e-12 to 1e9"));
+            return self.refuse(format!(
+                "vertex {vertex} has a mass of {mass} kg; accepted: 1e-12 to 1e9"
+            ));
         }
         if let Some(pin) = self.pins.iter().find(|&&pin| pin as usize >= count) {
             return self.refuse(format!("pin {pin} is no vertex; accepted: 0 to {}", count - 1));
@@ -159,7 +161,9 @@ fn masses_of(name: &str, mesh: &Mesh, positions: &[Vector], mass: &Mass) -> Resu
             out_of_domain("mass_per_vertex (kg)", each)
         }
         Mass::Density(density) => lumped_masses(name, mesh, positions, density),
-        Mass::PerVertex(each) => check_areas(name, mesh, positions).map(|()| vec![each; positions.len()]),
+        Mass::PerVertex(each) => {
+            check_areas(name, mesh, positions).map(|()| vec![each; positions.len()])
+        }
         Mass::Each(ref masses) => check_areas(name, mesh, positions).map(|()| masses.clone()),
     }
 }
@@ -168,12 +172,7 @@ fn check_areas(name: &str, mesh: &Mesh, positions: &[Vector]) -> Result<()> {
     lumped_masses(name, mesh, positions, 1.0).map(drop)
 }
 
-fn lumped_masses(
-    name: &str,
-    mesh: &Mesh,
-    positions: &[Vector],
-    density: f64,
-) -> Result<Vec<f64>> {
+fn lumped_masses(name: &str, mesh: &Mesh, positions: &[Vector], density: f64) -> Result<Vec<f64>> {
     let mut masses = vec![0.0; positions.len()];
     for (face, corners) in mesh.faces().enumerate() {
         let area = mesh.vector_area(face, positions).norm();

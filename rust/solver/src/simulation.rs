@@ -79,9 +79,10 @@ impl Simulation {
             .thread_name(|index| format!("boucle-{index}"))
             .build()
             .map_err(|_| Error::Threads(settings.threads))?;
-        let pinned = bases.iter().zip(&cloths).flat_map(|(base, cloth)| {
-            cloth.pins.iter().map(move |pin| base + pin)
-        });
+        let pinned = bases
+            .iter()
+            .zip(&cloths)
+            .flat_map(|(base, cloth)| cloth.pins.iter().map(move |pin| base + pin));
         let mut simulation = Self {
             pins: Pins::new(pinned, &state),
             system: System::new(&cloths, winds, settings.gravity),
@@ -159,14 +160,18 @@ impl Simulation {
     /// Puts the vertices of a cloth at these positions (m), at rest. Rest lengths stay.
     pub fn set_positions(&mut self, cloth: usize, positions: &[Vector]) {
         let base = self.bases[cloth] as usize;
-        for (vertex, position) in positions.iter().enumerate().take(self.cloths[cloth].positions.len()) {
+        for (vertex, position) in
+            positions.iter().enumerate().take(self.cloths[cloth].positions.len())
+        {
             self.state.position.set(base + vertex, position);
             self.state.velocity.set(base + vertex, &Vector::zeros());
         }
         let state = &self.state;
         let end = base + self.cloths[cloth].positions.len();
         self.pins.aim(|particle| {
-            (base..end).contains(&(particle as usize)).then(|| state.position.get(particle as usize))
+            (base..end)
+                .contains(&(particle as usize))
+                .then(|| state.position.get(particle as usize))
         });
     }
 
@@ -185,8 +190,7 @@ impl Simulation {
         let Self { system, pins, limits, state, scratch, threads, .. } = self;
         threads.install(|| {
             for substep in 1..=substeps {
-                let step =
-                    Step { system, integrator: rule, pins, h, is_last: substep == substeps };
+                let step = Step { system, integrator: rule, pins, h, is_last: substep == substeps };
                 step.run(state, scratch, limits);
             }
         });

@@ -55,7 +55,8 @@ impl Spectrum {
         let viscous = (0..system.particle_count())
             .filter(|&particle| !system.is_pinned(particle))
             .map(|particle| system.air_damping[particle] * system.inverse_masses[particle]);
-        let wind = system.air.damping() * system.inverse_masses.iter().fold(0.0, |a, &b| f64::max(a, b));
+        let wind =
+            system.air.damping() * system.inverse_masses.iter().fold(0.0, |a, &b| f64::max(a, b));
         let ratios = cloths.iter().flat_map(|cloth| {
             let is_relative = cloth.material.damping_law == DampingLaw::Relative;
             cloth.springs.iter().filter(|spring| spring.stiffness > 0.0).map(move |spring| {
@@ -109,12 +110,14 @@ impl Spectrum {
         const DAMPINGS: u32 = 8;
         (0..=STIFFNESSES).all(|i| {
             // From the stiffest oscillator down to one of a millionth of its stiffness.
-            let w_squared = self.w_squared * 10f64.powf(-6.0 * f64::from(i) / f64::from(STIFFNESSES));
+            let w_squared =
+                self.w_squared * 10f64.powf(-6.0 * f64::from(i) / f64::from(STIFFNESSES));
             let least = self.air_damping + self.damping_by_stiffness * w_squared;
             (0..=DAMPINGS).all(|j| {
                 let part = f64::from(j) / f64::from(DAMPINGS);
                 let c = least + part * (self.damping - least).max(0.0);
-                spectral_radius(&integrator.amplification(w_squared, c, h)) <= 1.0 + GROWTH * h + 1e-12
+                spectral_radius(&integrator.amplification(w_squared, c, h))
+                    <= 1.0 + GROWTH * h + 1e-12
             })
         })
     }
@@ -147,9 +150,11 @@ fn weighted_edges(cloths: &[Cloth], weights: impl Fn(&Cloth) -> Vec<f64>) -> Vec
     let mut base = 0;
     for cloth in cloths {
         let pairs = cloth.springs.iter().zip(weights(cloth));
-        edges.extend(pairs.filter(|&(_, weight)| weight > 0.0).map(|(spring, weight)| {
-            (spring.ends.map(|end| end + base), weight)
-        }));
+        edges.extend(
+            pairs
+                .filter(|&(_, weight)| weight > 0.0)
+                .map(|(spring, weight)| (spring.ends.map(|end| end + base), weight)),
+        );
         base += cloth.positions.len() as u32;
     }
     edges

@@ -11,11 +11,8 @@ use rayon::prelude::*;
 
 use crate::cloth::Cloth;
 use crate::force::{Air, AirScratch, Wind};
-use crate::kernel::{CHUNK, ChunkVectors, Layout, spring_forces};
+use crate::kernel::{CHUNK, ChunkVectors, Layout, add_spring_forces};
 use crate::state::State;
-
-/// Chunks that one task takes at least: fewer are not worth a thread.
-const CHUNKS_A_TASK: usize = 4;
 
 /// Everything that acts on the particles; only pins change.
 #[derive(Debug)]
@@ -66,7 +63,6 @@ impl System {
         self.masses.len()
     }
 
-
     pub(crate) fn is_pinned(&self, particle: usize) -> bool {
         self.inverse_masses[particle] == 0.0
     }
@@ -90,11 +86,11 @@ impl System {
         let [x, y, z] = out.position.0.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));
         let [u, v, w] = out.velocity.0.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));
         let chunks = (x, y, z, u, v, w).into_par_iter().enumerate();
-        chunks.with_min_len(CHUNKS_A_TASK).for_each(|(chunk, (x, y, z, u, v, w))| {
+        chunks.for_each(|(chunk, (x, y, z, u, v, w))| {
             self.arch.dispatch(
                 #[inline(always)]
                 || {
-                    let mut acceleration = [[0.0; CHUNK]; 3];
+                    let mut acceleration: ChunkVectors = [[0.0; CHUNK]; 3];
                     self.accelerations(chunk, at, air, &mut acceleration);
                     for (axis, (position, velocity)) in
                         [(x, u), (y, v), (z, w)].into_iter().enumerate()
@@ -110,7 +106,7 @@ impl System {
 
     #[inline(always)]
     fn accelerations(&self, chunk: usize, at: &State, air: &AirScratch, out: &mut ChunkVectors) {
-        spring_forces(&self.layout, chunk, at, out);
+        add_spring_forces(&self.layout, chunk, at, out);
         if !self.air.is_still() {
             self.air.add_forces(chunk, at, air, out);
         }

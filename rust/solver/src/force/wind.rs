@@ -211,7 +211,8 @@ impl Air {
     }
 
     fn force_on(&self, particle: usize, state: &State, scratch: &AirScratch) -> Vector {
-        let starts = self.particle_starts[particle] as usize..self.particle_starts[particle + 1] as usize;
+        let starts =
+            self.particle_starts[particle] as usize..self.particle_starts[particle + 1] as usize;
         let faces = self.faces_of[starts].iter().map(|&face| &scratch.faces[face as usize]);
         let position = state.position.get(particle);
         let velocity = state.velocity.get(particle);

@@ -1,184 +1,170 @@
-//! Which springs each particle gathers, arranged for the kernel once and for all.
+//! Which springs lie on diagonals and which are gathered, found once and for all.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::{CHUNK, WIDTH};
+use super::CHUNK;
 use crate::cloth::Cloth;
+use crate::law::Spring;
 use crate::law::spring::Law;
 
-/// Springs of a run: neighbour = particle + offset, for every particle of the run.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RunSlot {
-    pub(crate) offset: isize,
-    pub(crate) stiffness: f64,
-    pub(crate) damping: f64,
-    /// Index of the first particle's rest length.
-    pub(crate) rest_lengths: usize,
-}
+/// A diagonal holds a spring for at least one in so many of a cloth's particles; fewer are gathered.
+const SPARSEST: usize = 8;
 
-/// Particles in a row, within one chunk, with the same relative neighbours and materials.
+/// Springs from particles in a row to those `offset` further on, of one stiffness and damping.
 #[derive(Clone, Debug)]
-pub(crate) struct Run {
-    pub(crate) particles: Range<usize>,
-    pub(crate) slots: Range<usize>,
-    pub(crate) law: Law,
+pub(crate) struct Diagonal {
+    /// The particle of the first rest length.
+    pub(super) first: usize,
+    pub(super) offset: usize,
+    pub(super) stiffness: f64,
+    pub(super) damping: f64,
+    pub(super) law: Law,
+    /// For each particle in a row (m); 0 where it has no such spring.
+    pub(super) rest_lengths: Vec<f64>,
 }
 
-/// One spring of each of `WIDTH` gathered particles; fills up with springs of no stiffness to oneself.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct GatherSlot {
-    pub(crate) neighbors: [u32; WIDTH],
-    pub(crate) stiffness: [f64; WIDTH],
-    pub(crate) damping: [f64; WIDTH],
-    pub(crate) rest_lengths: [f64; WIDTH],
-}
+/// Gathered particles that are computed side by side.
+pub(super) const GATHERED: usize = 8;
 
-/// Up to `WIDTH` particles of one chunk that no run holds; the last stands in for those that lack.
+/// Up to `GATHERED` particles of one chunk; the last stands in for those that lack.
 #[derive(Clone, Debug)]
 pub(crate) struct Gather {
-    pub(crate) particles: [u32; WIDTH],
-    pub(crate) slots: Range<usize>,
-    pub(crate) law: Law,
+    pub(super) particles: [u32; GATHERED],
+    pub(super) count: usize,
+    pub(super) slots: Range<usize>,
+    pub(super) law: Law,
+}
+
+/// One spring of each gathered particle; one that has no more is joined to itself by a spring without force.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GatherSlot {
+    pub(super) neighbors: [u32; GATHERED],
+    pub(super) stiffness: [f64; GATHERED],
+    pub(super) damping: [f64; GATHERED],
+    pub(super) rest_lengths: [f64; GATHERED],
 }
 
 /// All the springs of a simulation as the kernel reads them.
 #[derive(Debug, Default)]
 pub(crate) struct Layout {
-    pub(crate) runs: Vec<Run>,
-    pub(crate) run_slots: Vec<RunSlot>,
-    pub(crate) rest_lengths: Vec<f64>,
-    pub(crate) gathers: Vec<Gather>,
-    pub(crate) gather_slots: Vec<GatherSlot>,
-    /// For each chunk, its runs and its gathers.
-    pub(crate) chunks: Vec<(Range<usize>, Range<usize>)>,
+    pub(super) diagonals: Vec<Diagonal>,
+    pub(super) gathers: Vec<Gather>,
+    pub(super) gather_slots: Vec<GatherSlot>,
+    pub(super) gathers_of_chunk: Vec<Range<usize>>,
 }
 
 /// A spring as one of its ends sees it.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Half {
     neighbor: u32,
-    stiffness: f64,
-    damping: f64,
-    rest_length: f64,
-}
-
-impl Half {
-    fn is_like(&self, particle: usize, other: &Self, other_particle: usize) -> bool {
-        let offset = i64::from(self.neighbor) - particle as i64;
-        let other_offset = i64::from(other.neighbor) - other_particle as i64;
-        offset == other_offset
-            && self.stiffness.to_bits() == other.stiffness.to_bits()
-            && self.damping.to_bits() == other.damping.to_bits()
-    }
+    spring: Spring,
 }
 
 impl Layout {
     pub(crate) fn new(cloths: &[Cloth]) -> Self {
         let mut layout = Self::default();
-        let (halves, laws) = halves_of(cloths);
-        for start in (0..halves.len()).step_by(CHUNK) {
-            layout.add_chunk(start..(start + CHUNK).min(halves.len()), &halves, &laws);
+        let mut halves = Vec::new();
+        let mut laws = Vec::new();
+        for cloth in cloths {
+            let law = Law::of(&cloth.material);
+            let base = laws.len();
+            laws.resize(base + cloth.positions.len(), law);
+            halves.resize(laws.len(), Vec::new());
+            for springs in alike(cloth).into_values() {
+                if springs.len() * SPARSEST >= cloth.positions.len() {
+                    layout.diagonals.push(diagonal(&springs, base, law));
+                } else {
+                    scatter(&springs, base as u32, &mut halves);
+                }
+            }
+        }
+        for start in (0..laws.len()).step_by(CHUNK) {
+            let end = (start + CHUNK).min(laws.len());
+            layout.add_gathers(start..end, &halves, &laws);
         }
         layout
     }
 
-    fn add_chunk(&mut self, chunk: Range<usize>, halves: &[Vec<Half>], laws: &[Law]) {
-        let (first_run, first_gather) = (self.runs.len(), self.gathers.len());
-        let mut gathered = Vec::new();
-        let mut start = chunk.start;
-        while start < chunk.end {
-            let is_like = |&i: &usize| {
-                laws[i] == laws[start]
-                    && halves[i].len() == halves[start].len()
-                    && halves[i].iter().zip(&halves[start]).all(|(a, b)| a.is_like(i, b, start))
-            };
-            let length = (start + 1..chunk.end).take_while(is_like).count() + 1;
-            if length < WIDTH {
-                gathered.extend(start..start + length);
-            } else {
-                self.add_run(start..start + length, halves, laws[start]);
-            }
-            start += length;
-        }
-        // Neighbours in degree fill a gather with the least waste; the order within a chunk is free.
-        gathered.sort_by_key(|&particle| halves[particle].len());
-        for same_law in gathered.chunk_by(|&a, &b| laws[a] == laws[b]) {
-            for particles in same_law.chunks(WIDTH) {
+    fn add_gathers(&mut self, chunk: Range<usize>, halves: &[Vec<Half>], laws: &[Law]) {
+        let first = self.gathers.len();
+        let mut particles: Vec<usize> = chunk.filter(|&i| !halves[i].is_empty()).collect();
+        // Like numbers of springs fill a gather with the least waste; the order within a chunk is free.
+        particles.sort_by_key(|&particle| halves[particle].len());
+        for same_law in particles.chunk_by(|&a, &b| laws[a] == laws[b]) {
+            for particles in same_law.chunks(GATHERED) {
                 self.add_gather(particles, halves, laws[particles[0]]);
             }
         }
-        self.chunks.push((first_run..self.runs.len(), first_gather..self.gathers.len()));
-    }
-
-    fn add_run(&mut self, particles: Range<usize>, halves: &[Vec<Half>], law: Law) {
-        let first_slot = self.run_slots.len();
-        for (slot, half) in halves[particles.start].iter().enumerate() {
-            self.run_slots.push(RunSlot {
-                offset: half.neighbor as isize - particles.start as isize,
-                stiffness: half.stiffness,
-                damping: half.damping,
-                rest_lengths: self.rest_lengths.len(),
-            });
-            let rest_lengths = particles.clone().map(|i| halves[i][slot].rest_length);
-            self.rest_lengths.extend(rest_lengths);
-        }
-        self.runs.push(Run { particles, slots: first_slot..self.run_slots.len(), law });
+        self.gathers_of_chunk.push(first..self.gathers.len());
     }
 
     fn add_gather(&mut self, particles: &[usize], halves: &[Vec<Half>], law: Law) {
         let first_slot = self.gather_slots.len();
         let of_lane = |lane: usize| particles[lane.min(particles.len() - 1)];
-        let degree = particles.iter().map(|&i| halves[i].len()).max().unwrap_or(0);
+        let degree = particles.iter().map(|&particle| halves[particle].len()).max().unwrap_or(0);
         for slot in 0..degree {
-            let lanes: [Half; WIDTH] = std::array::from_fn(|lane| {
-                let particle = of_lane(lane);
-                let none = Half {
-                    neighbor: particle as u32,
-                    stiffness: 0.0,
-                    damping: 0.0,
-                    rest_length: 1.0,
-                };
-                halves[particle].get(slot).copied().unwrap_or(none)
-            });
-            self.gather_slots.push(GatherSlot {
-                neighbors: lanes.map(|half| half.neighbor),
-                stiffness: lanes.map(|half| half.stiffness),
-                damping: lanes.map(|half| half.damping),
-                rest_lengths: lanes.map(|half| half.rest_length),
-            });
+            let mut lanes = GatherSlot {
+                neighbors: std::array::from_fn(|lane| of_lane(lane) as u32),
+                stiffness: [0.0; GATHERED],
+                damping: [0.0; GATHERED],
+                rest_lengths: [1.0; GATHERED],
+            };
+            for lane in 0..GATHERED {
+                let Some(half) = halves[of_lane(lane)].get(slot) else { continue };
+                lanes.neighbors[lane] = half.neighbor;
+                lanes.stiffness[lane] = half.spring.stiffness;
+                lanes.damping[lane] = half.spring.damping;
+                lanes.rest_lengths[lane] = half.spring.rest_length;
+            }
+            self.gather_slots.push(lanes);
         }
         self.gathers.push(Gather {
             particles: std::array::from_fn(|lane| of_lane(lane) as u32),
+            count: particles.len(),
             slots: first_slot..self.gather_slots.len(),
             law,
         });
     }
 }
 
-/// Each particle's springs, by kind and neighbour, and its law, in the simulation's numbering.
-fn halves_of(cloths: &[Cloth]) -> (Vec<Vec<Half>>, Vec<Law>) {
-    let mut halves = Vec::new();
-    let mut laws = Vec::new();
-    for cloth in cloths {
-        let base = halves.len() as u32;
-        let mut of_cloth = vec![Vec::new(); cloth.positions.len()];
-        for spring in cloth.springs.iter().filter(|s| s.stiffness > 0.0 || s.damping > 0.0) {
-            let [a, b] = spring.ends;
-            for (from, to) in [(a, b), (b, a)] {
-                let half = Half {
-                    neighbor: base + to,
-                    stiffness: spring.stiffness,
-                    damping: spring.damping,
-                    rest_length: spring.rest_length,
-                };
-                of_cloth[from as usize].push((spring.kind, half));
-            }
-        }
-        for mut of_particle in of_cloth {
-            of_particle.sort_by_key(|(kind, half)| (*kind, half.neighbor));
-            halves.push(of_particle.into_iter().map(|(_, half)| half).collect());
-        }
-        laws.resize(halves.len(), Law::of(&cloth.material));
+/// What the springs of one diagonal have in common: kind, offset, stiffness and damping (as bits).
+type Likeness = (usize, u32, u64, u64);
+
+/// A cloth's springs, smaller end first, by what they have in common.
+fn alike(cloth: &Cloth) -> BTreeMap<Likeness, Vec<Spring>> {
+    let mut groups = BTreeMap::new();
+    for spring in cloth.springs.iter().filter(|s| s.stiffness > 0.0 || s.damping > 0.0) {
+        let [a, b] = spring.ends;
+        let likeness = (
+            spring.kind as usize,
+            a.abs_diff(b),
+            spring.stiffness.to_bits(),
+            spring.damping.to_bits(),
+        );
+        let group: &mut Vec<Spring> = groups.entry(likeness).or_default();
+        group.push(Spring { ends: [a.min(b), a.max(b)], ..*spring });
     }
-    (halves, laws)
+    groups
+}
+
+fn diagonal(springs: &[Spring], base: usize, law: Law) -> Diagonal {
+    let starts = springs.iter().map(|spring| spring.ends[0] as usize);
+    let first = starts.clone().min().unwrap_or(0);
+    let last = starts.max().unwrap_or(0);
+    let mut rest_lengths = vec![0.0; last - first + 1];
+    for spring in springs {
+        rest_lengths[spring.ends[0] as usize - first] = spring.rest_length;
+    }
+    let Spring { ends: [a, b], stiffness, damping, .. } = springs[0];
+    let offset = (b - a) as usize;
+    Diagonal { first: base + first, offset, stiffness, damping, law, rest_lengths }
+}
+
+fn scatter(springs: &[Spring], base: u32, halves: &mut [Vec<Half>]) {
+    for &spring in springs {
+        let [a, b] = spring.ends.map(|end| base + end);
+        halves[a as usize].push(Half { neighbor: b, spring });
+        halves[b as usize].push(Half { neighbor: a, spring });
+    }
 }

@@ -13,12 +13,7 @@
 //!
 //! Ends that coincide have no direction and feel no spring force.
 //!
-//! The same formulas run on one spring or on several side by side: [`Lanes`] is a few `f64`, and every
-//! operation is one of IEEE 754's basic ones, never fused, so the bits do not depend on the machine.
-//!
 //! Source: Provot 1995; axial damping after the course notes of Baraff & Witkin 1997.
-
-use std::ops::{Add, Mul, Sub};
 
 use boucle_geometry::Vector;
 
@@ -126,98 +121,81 @@ terms! {
     AxiallyDampedStiffening: Axial, true;
 }
 
-/// Several numbers, one for each particle of a block.
-#[derive(Clone, Copy)]
-pub(crate) struct Lanes<const W: usize>(pub(crate) [f64; W]);
-
-impl<const W: usize> Lanes<W> {
-    pub(crate) const ZERO: Self = Self([0.0; W]);
-
-    #[inline(always)]
-    pub(crate) fn splat(value: f64) -> Self {
-        Self([value; W])
-    }
-
-    #[inline(always)]
-    fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        Self(std::array::from_fn(|lane| f(self.0[lane])))
-    }
-}
-
-macro_rules! lanewise {
-    ($($trait:ident $method:ident $op:tt;)*) => {$(
-        impl<const W: usize> $trait for Lanes<W> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(std::array::from_fn(|lane| self.0[lane] $op other.0[lane]))
-            }
-        }
-    )*};
-}
-
-lanewise! { Add add +; Sub sub -; Mul mul *; }
-
-/// A vector for each particle of a block.
-pub(crate) type Vectors<const W: usize> = [Lanes<W>; 3];
+/// A vector, one number an axis.
+pub(crate) type Triple = [f64; 3];
 
 #[inline(always)]
-fn dot<const W: usize>(a: &Vectors<W>, b: &Vectors<W>) -> Lanes<W> {
+fn dot(a: Triple, b: Triple) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// One over the square root, within two units in the last place.
-///
-/// Single precision gives a first value y with `1 - q y²` of order 1e-7, and one step of Halley's method
-/// cubes it: a third of the time of a square root and a division in double precision.
-#[inline(always)]
-fn inverse_root<const W: usize>(square: Lanes<W>) -> Lanes<W> {
-    let y = square.map(|q| f64::from(1.0 / (q as f32).sqrt()));
-    let r = Lanes::splat(1.0) - square * y * y;
-    y + y * r * (Lanes::splat(0.5) + Lanes::splat(0.375) * r)
-}
-
-/// The springs from a block of particles to one neighbour each.
-pub(crate) struct Block<const W: usize> {
-    /// Particle less neighbour (m).
-    pub(crate) span: Vectors<W>,
-    /// The same of velocity (m/s).
-    pub(crate) relative_velocity: Vectors<W>,
-    pub(crate) rest_length: Lanes<W>,
-    pub(crate) stiffness: Lanes<W>,
-    pub(crate) damping: Lanes<W>,
+/// A spring as one of its ends sees it. Only IEEE 754's basic operations and no branches, for the compiler to run it
+/// on many springs side by side: the bits do not depend on how many, nor on the machine.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pull {
+    /// Length without force (m).
+    pub(crate) rest_length: f64,
+    /// Stiffness (N/m).
+    pub(crate) stiffness: f64,
+    /// Damping (N·s/m).
+    pub(crate) damping: f64,
+    /// See [`Law`].
     pub(crate) stiffen_beyond: f64,
 }
 
-impl<const W: usize> Block<W> {
-    /// Adds the springs' forces (N) on the particles of the block.
+impl Pull {
+    /// Squared length (m²) of a span (m), never 0.
     #[inline(always)]
-    pub(crate) fn add_force<T: Terms>(&self, force: &mut Vectors<W>) {
-        let span = &self.span;
-        let squared = dot(span, span)
-            .map(|q| if q > SHORTEST_SQUARED { q } else { SHORTEST_SQUARED });
-        let inverse_length = inverse_root(squared);
+    pub(crate) fn squared_length(span: Triple) -> f64 {
+        let squared = dot(span, span);
+        if squared > SHORTEST_SQUARED { squared } else { SHORTEST_SQUARED }
+    }
+
+    /// One over the length (1/m), in single precision: [`Pull::on_other`] makes it double.
+    #[inline(always)]
+    pub(crate) fn rough_inverse_length(squared_length: f32) -> f32 {
+        1.0 / squared_length.sqrt()
+    }
+
+    /// The force (N) on the other end; `span` (m) and `relative_velocity` (m/s) are this end's less the other's.
+    /// The force on this end is its opposite.
+    #[inline(always)]
+    pub(crate) fn on_other<T: Terms>(
+        &self,
+        span: Triple,
+        squared_length: f64,
+        rough_inverse_length: f32,
+        relative_velocity: Triple,
+    ) -> Triple {
+        let inverse_length = refined(squared_length, rough_inverse_length);
         let mut stiffness = self.stiffness;
         if T::STIFFENS {
-            let length = squared * inverse_length;
-            let beyond = self.stiffen_beyond;
-            stiffness = Lanes(std::array::from_fn(|lane| {
-                let ratio = length.0[lane] / self.rest_length.0[lane];
-                if ratio > beyond { stiffness.0[lane] * ratio } else { stiffness.0[lane] }
-            }));
+            let ratio = squared_length * inverse_length / self.rest_length;
+            stiffness *= if ratio > self.stiffen_beyond { ratio } else { 1.0 };
         }
-        let mut pull = stiffness - stiffness * (self.rest_length * inverse_length);
-        if T::DAMPING == Damping::Axial {
-            let along = dot(&self.relative_velocity, span) * inverse_length * inverse_length;
-            pull = pull + self.damping * along;
-        }
-        for axis in 0..3 {
-            force[axis] = force[axis] - pull * span[axis];
-            if T::DAMPING == Damping::Relative {
-                force[axis] = force[axis] - self.damping * self.relative_velocity[axis];
+        let mut pull = stiffness * (1.0 - self.rest_length * inverse_length);
+        match T::DAMPING {
+            Damping::Axial => {
+                let speed = dot(relative_velocity, span) * inverse_length;
+                pull += self.damping * speed * inverse_length;
+                span.map(|d| pull * d)
             }
+            Damping::Relative => std::array::from_fn(|axis| {
+                pull * span[axis] + self.damping * relative_velocity[axis]
+            }),
+            Damping::None => span.map(|d| pull * d),
         }
     }
+}
+
+/// One over the square root, to 3e-14, from its value in single precision.
+///
+/// The rough y leaves `1 - q y²` of order 1e-7, and a step of Newton's method squares it: less work than a square
+/// root and a division in double precision.
+#[inline(always)]
+fn refined(square: f64, rough: f32) -> f64 {
+    let y = f64::from(rough);
+    y * (1.5 - 0.5 * square * y * y)
 }
 
 #[cfg(test)]
@@ -225,28 +203,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_inverse_root_is_right_to_the_last_places() {
+    fn the_inverse_root_is_right_to_fourteen_digits() {
         for exponent in -35..35 {
             for step in 0..50 {
                 let square = 10f64.powi(exponent) * (1.0 + 0.18 * f64::from(step));
-                let error = (inverse_root(Lanes([square])).0[0] * square.sqrt() - 1.0).abs();
-                assert!(error < 5e-16, "{square}: {error}");
+                let rough = Pull::rough_inverse_length(square as f32);
+                let error = (refined(square, rough) * square.sqrt() - 1.0).abs();
+                assert!(error < 3e-14, "{square}: {error}");
             }
         }
     }
 
     fn force_of<T: Terms>(span: [f64; 3], velocity: [f64; 3]) -> [f64; 3] {
-        let block = Block {
-            span: span.map(|x| Lanes([x])),
-            relative_velocity: velocity.map(|v| Lanes([v])),
-            rest_length: Lanes([2.0]),
-            stiffness: Lanes([10.0]),
-            damping: Lanes([0.5]),
-            stiffen_beyond: 1.1,
-        };
-        let mut force = [Lanes::ZERO; 3];
-        block.add_force::<T>(&mut force);
-        force.map(|lane| lane.0[0])
+        let pull = Pull { rest_length: 2.0, stiffness: 10.0, damping: 0.5, stiffen_beyond: 1.1 };
+        let squared = Pull::squared_length(span);
+        let rough = Pull::rough_inverse_length(squared as f32);
+        pull.on_other::<T>(span, squared, rough, velocity).map(|force| -force)
     }
 
     #[test]

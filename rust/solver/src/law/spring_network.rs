@@ -168,8 +168,8 @@ mod tests {
     #[test]
     fn two_triangles_are_joined_across_their_common_edge() {
         let mesh = Mesh::from_faces(4, &[[0, 1, 2], [2, 1, 3]]).expect("two triangles");
-        let positions = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
-            .map(|[x, y]| Vector::new(x, y, 0.0));
+        let positions =
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|[x, y]| Vector::new(x, y, 0.0));
         let springs = springs_of_mesh(&mesh, &positions, &SpringMaterial::default());
         let shear: Vec<_> = springs.iter().filter(|s| s.kind == SpringKind::Shear).collect();
         assert_eq!(counts(&springs), [5, 1, 0]);

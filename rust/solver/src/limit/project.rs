@@ -135,7 +135,8 @@ impl Project {
             }
             self.moved.insert(rank);
             for end in [edge.near, edge.far] {
-                let edges = self.starts[end as usize] as usize..self.starts[end as usize + 1] as usize;
+                let edges =
+                    self.starts[end as usize] as usize..self.starts[end as usize + 1] as usize;
                 for &touched in &self.edges_of[edges] {
                     let touched = touched as usize;
                     if touched > rank { &mut self.now } else { &mut self.later }.insert(touched);

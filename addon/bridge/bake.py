@@ -177,20 +177,29 @@ class Bake:
         frame, subframe = scene.frame_current, scene.frame_subframe
         live.drop(obj)
         slot.ensure(obj)
-        shown = {m.name: m.show_viewport for m in (*slot.below(obj), slot.find(obj).cache)}
+        slot.find(obj).cache.show_viewport = False
+        shown = {modifier.name: modifier.show_viewport for modifier in slot.below(obj)}
         runtime.busy.add("bake")
         try:
             for name in shown:
                 obj.modifiers[name].show_viewport = False
             yield
         finally:
-            obj = registry.by_uid(self.uid)
-            for name, state in shown.items() if obj is not None else ():
-                if obj.modifiers.get(name) is not None:
-                    obj.modifiers[name].show_viewport = state
+            self._restore(shown)
             if bpy.data.scenes.get(self._scene_name) is not None:
                 self._scene().frame_set(frame, subframe=subframe)
             runtime.busy.discard("bake")
+
+    def _restore(self, shown: dict[str, bool]) -> None:
+        obj = registry.by_uid(self.uid)
+        if obj is None:
+            return
+        for name, state in shown.items():
+            if obj.modifiers.get(name) is not None:
+                obj.modifiers[name].show_viewport = state
+        found = slot.find(obj)
+        if found is not None:
+            found.cache.show_viewport = bool(slot.played(found.cache))
 
 
 def _without_end(record: dict[str, Any]) -> dict[str, Any]:

@@ -24,9 +24,8 @@ def absolute(obj: bpy.types.Object, path: str) -> str:
 def played_path(obj: bpy.types.Object) -> str:
     """The absolute path of the bake that the object plays; empty without one."""
     found = slot.find(obj)
-    if found is None or cache_paths.is_live(found.cache.filepath):
-        return ""
-    return absolute(obj, found.cache.filepath)
+    path = slot.played(found.cache) if found is not None else ""
+    return "" if cache_paths.is_live(path) else absolute(obj, path)
 
 
 def is_baked(obj: bpy.types.Object) -> bool:
@@ -58,30 +57,16 @@ def attach(obj: bpy.types.Object, pc2_path: str, record: dict[str, Any]) -> None
     """Let the object play a bake; record is what the bake remembers."""
     found = slot.ensure(obj)
     path = cache_paths.relative_to_blend(pc2_path, bpy.data.filepath)
-    if found.cache.filepath != path:
-        found.cache.filepath = path
-    point_modifier(found.cache, int(record["first"]))
+    slot.play(found.cache, path, int(record["first"]))
     obj.boucle.bake_record = json.dumps(record)
     obj.update_tag()
-
-
-def point_modifier(modifier: bpy.types.MeshCacheModifier, first_frame: int) -> None:
-    """Make a Mesh Cache modifier play a PC2 whose first sample is at first_frame."""
-    modifier.cache_format = "PC2"
-    modifier.time_mode = "FRAME"
-    modifier.play_mode = "SCENE"
-    modifier.deform_mode = "OVERWRITE"
-    modifier.interpolation = "LINEAR"
-    modifier.frame_start = float(first_frame)
-    modifier.frame_scale = 1.0
-    modifier.factor = 1.0
 
 
 def detach(obj: bpy.types.Object) -> None:
     """Let the object play no bake; files stay."""
     found = slot.find(obj)
     if found is not None:
-        found.cache.filepath = ""
+        slot.silence(found.cache)
     obj.boucle.bake_record = ""
     obj.update_tag()
 

@@ -10,7 +10,7 @@ import bpy
 from ..core import cache_paths, pc2
 from ..core.live_frames import LiveFrames
 from ..core.refusal import Refusal
-from . import cache, mesh_arrays, rest, runtime, slot
+from . import mesh_arrays, rest, runtime, slot
 
 
 def may_write(obj: bpy.types.Object) -> bool:
@@ -84,9 +84,8 @@ class TemporaryFile:
         except Refusal as refusal:
             runtime.messages[obj.session_uid] = str(refusal)
             return
-        if modifier.cache.filepath != self._path:
-            modifier.cache.filepath = self._path
-            cache.point_modifier(modifier.cache, frames.first)
+        if slot.played(modifier.cache) != self._path:
+            slot.play(modifier.cache, self._path, frames.first)
             is_new = True
         if is_new:
             obj.update_tag()
@@ -104,7 +103,7 @@ class TemporaryFile:
         """Name no temporary file."""
         found = slot.find(obj)
         if found is not None and cache_paths.is_live(found.cache.filepath):
-            found.cache.filepath = ""
+            slot.silence(found.cache)
 
     def end(self, obj: bpy.types.Object) -> None:
         """Name no temporary file, and remove it."""

@@ -61,6 +61,10 @@ def _errors(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
         yield _error(f'"{obj.name}" is in Edit Mode: leave it first')
         return
     matrix = mesh_arrays.world_matrix(obj)
+    try:
+        sampling.inverse(obj, matrix)
+    except Refusal as refusal:
+        yield _error(str(refusal))
     faces = mesh_arrays.topology(mesh)
     for problem in mesh_check.check(
         points.transform(rest.positions(mesh), matrix, "d"),
@@ -70,7 +74,6 @@ def _errors(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
     ):
         yield problem._replace(sentence=f'"{obj.name}": {problem.sentence}')
     try:
-        sampling.inverse(obj, matrix)
         scene_json.describe(
             obj.name, settings.values(obj), settings.world(scene), settings.groups(obj)
         )

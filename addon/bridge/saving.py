@@ -25,7 +25,11 @@ def after_save(scene: bpy.types.Scene) -> None:
     """Show live frames again. A file saved as a copy leaves the session unsaved: name its caches in full."""
     for obj in registry.local_cloths():
         found = slot.find(obj)
-        if found is not None and found.cache.filepath.startswith("//"):
+        if found is None:
+            continue
+        if not slot.played(found.cache):
+            slot.silence(found.cache)
+        elif found.cache.filepath.startswith("//"):
             _name_in_full_if_lost(obj, found.cache)
     live.show_all(scene)
 
@@ -36,8 +40,11 @@ def after_load() -> None:
     for obj in registry.local_cloths():
         rest.put_back(obj.data)
         found = slot.find(obj)
-        if found is not None and cache_paths.is_live(found.cache.filepath):
-            found.cache.filepath = ""
+        if found is None:
+            continue
+        path = slot.played(found.cache)
+        if not path or cache_paths.is_live(path):
+            slot.silence(found.cache)
     cache.ensure_identity()
 
 

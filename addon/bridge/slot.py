@@ -56,9 +56,45 @@ def ensure(obj: bpy.types.Object) -> Slot:
     cache.time_mode = "FRAME"
     cache.show_expanded = False
     cache.show_in_editmode = False
+    silence(cache)
     for offset, name in enumerate((target.name, cache.name)):
         obj.modifiers.move(obj.modifiers.find(name), place + offset)
     return find(obj)
+
+
+def play(modifier: bpy.types.MeshCacheModifier, path: str, first_frame: int) -> None:
+    """Make the Mesh Cache play a PC2 whose first sample is at first_frame."""
+    if modifier.filepath != path:
+        modifier.filepath = path
+    modifier.cache_format = "PC2"
+    modifier.time_mode = "FRAME"
+    modifier.play_mode = "SCENE"
+    modifier.deform_mode = "OVERWRITE"
+    modifier.interpolation = "LINEAR"
+    modifier.frame_start = float(first_frame)
+    modifier.frame_scale = 1.0
+    modifier.factor = 1.0
+    _switch(modifier, True)
+
+
+def silence(modifier: bpy.types.MeshCacheModifier) -> None:
+    """Make the Mesh Cache play nothing.
+
+    An empty path is not enough: the first save of a file makes it a relative path to nowhere, and Blender complains.
+    """
+    modifier.filepath = ""
+    _switch(modifier, False)
+
+
+def played(modifier: bpy.types.MeshCacheModifier) -> str:
+    """The path that the Mesh Cache plays; empty if it plays nothing."""
+    return modifier.filepath if modifier.filepath.lower().endswith(".pc2") else ""
+
+
+def _switch(modifier: bpy.types.MeshCacheModifier, on: bool) -> None:
+    for name in ("show_viewport", "show_render"):
+        if getattr(modifier, name) is not on:
+            setattr(modifier, name, on)
 
 
 def remove(obj: bpy.types.Object) -> None:

@@ -18,7 +18,7 @@ def small_render(folder, last=4):
     scene.frame_start, scene.frame_end = 1, last
     bpy.ops.object.camera_add(location=(0, -4, 0), rotation=(1.5708, 0, 0))
     scene.camera = bpy.context.object
-    bpy.ops.object.light_add(type="SUN", location=(0, -4, 4))
+    bpy.ops.object.light_add(type="SUN", rotation=(1.5708, 0, 0))
     bpy.context.object.data.energy = 5.0
 
 

@@ -137,7 +137,8 @@ class Bake:
         rows = report.Report(native.manifest_version(), bpy.data.filepath, threads, cloth)
         rows.head["integrator"] = description["solver"]["integrator"]
         rows.record = record
-        return Store(self.options.files or cache.own_files(obj), plan, rows)
+        files = self.options.files or cache.own_files(obj)
+        return Store(files, plan, rows, keeps_previous=self.options.files is None)
 
     def _pose(self, frame: int, is_pinned: bool) -> Pose:
         depsgraph = self._go_to(frame)

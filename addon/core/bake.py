@@ -19,7 +19,7 @@ from . import checkpoint_file, points, report
 from .cache_paths import CacheFiles
 from .pc2 import Writer
 from .points import Affine, Points
-from .refusal import Refusal
+from .refusal import Refusal, cannot_write
 
 CHECKPOINT_SECONDS = 5.0
 """A kill loses at most about this much work; writing a checkpoint takes milliseconds."""
@@ -92,8 +92,11 @@ class Step:
 class Store:
     """The files of one bake: samples, report and checkpoint."""
 
-    def __init__(self, files: CacheFiles, plan: Plan, rows: report.Report) -> None:
+    def __init__(
+        self, files: CacheFiles, plan: Plan, rows: report.Report, keeps_previous: bool = True
+    ) -> None:
         """Nothing is written before `begin` or `resume`."""
+        self._keeps_previous = keeps_previous
         self.files = files
         self.plan = plan
         self.rows = rows
@@ -107,8 +110,15 @@ class Store:
         return self._writer.sample_count if self._writer else 0
 
     def begin(self) -> None:
-        """Start afresh: files of an earlier bake are set aside as the previous ones."""
-        set_aside(self.files)
+        """Start afresh: files of an earlier bake are set aside as the previous ones, or removed."""
+        try:
+            if self._keeps_previous:
+                set_aside(self.files)
+            else:
+                for path in self.files.existing():
+                    os.remove(path)
+        except OSError as error:
+            raise cannot_write(self.files.pc2, error) from error
         self._writer = Writer.create(self.files.pc2, self.plan.vertex_count, self.plan.first)
 
     def resume(self, simulation: Simulation) -> bool:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from . import whole_file
+
+_LARGEST = frozenset({"frame", "substeps", "max_strain", "p99_strain", "max_shear_strain"})
+"""Parts of a certificate of which several cloths have the largest, not the sum."""
 
 
 class Report:
@@ -44,6 +48,41 @@ class Report:
     def write(self, path: str) -> None:
         """Replace the report file."""
         whole_file.replace(path, encode(self.as_dict()))
+
+
+def joined(reports: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """One report of several cloths, each simulated by itself.
+
+    A frame's row holds the largest strain, substeps of the cloth that took most, and sums of everything else; its hash is a
+    64-bit BLAKE2b digest of the cloths' hashes, in order. The report of a single cloth is left as it is.
+    """
+    if len(reports) == 1:
+        return dict(reports[0])
+    rows: dict[int, list[Mapping[str, Any]]] = {}
+    for report in reports:
+        for row in report["frames"]:
+            rows.setdefault(row["frame"], []).append(row)
+    return {
+        **{key: reports[0][key] for key in reports[0] if key not in {"cloths", "frames", "bake"}},
+        "cloths": [cloth for report in reports for cloth in report["cloths"]],
+        "frames": [_joined_row(rows[frame]) for frame in sorted(rows)],
+        "total_seconds": sum(report["total_seconds"] for report in reports),
+        "peak_memory_bytes": peak_memory(),
+    }
+
+
+def _joined_row(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    out: dict[str, Any] = {}
+    for key in rows[0]:
+        values = [row.get(key) for row in rows]
+        if key == "hash":
+            digest = hashlib.blake2b("".join(map(str, values)).encode(), digest_size=8)
+            out[key] = values[0] if len(values) == 1 else f"blake2b-64:{digest.hexdigest()}"
+        elif None in values:
+            out[key] = None
+        else:
+            out[key] = max(values) if key in _LARGEST else sum(values)
+    return out
 
 
 def encode(report: Mapping[str, Any]) -> bytes:

@@ -98,6 +98,12 @@ class Blender:
         return json.loads(result.read_text())
 
 
+@pytest.fixture
+def new_blender(tmp_path, module_folder):
+    """The Blender of the main environment, for what does not depend on the version."""
+    return Blender(VERSIONS[0], tmp_path, module_folder)
+
+
 @pytest.fixture(params=VERSIONS)
 def blender(request, tmp_path, module_folder):
     """Real Blender; the test's functions run inside it."""

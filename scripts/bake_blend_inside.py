@@ -1,0 +1,313 @@
+"""Bakes every Boucle cloth of a .blend; runs inside Blender, with the add-on enabled.
+
+Started by another Blender's --python, it enables the add-on itself and tells its events as lines on standard output.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import re
+import signal
+import sys
+import time
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+MODULE = "bl_ext.user_default.boucle"
+MARK = "@boucle "
+"""Begins the lines by which a bake in another Blender tells its events."""
+DONE, FAULT, WRONG_INPUT, DIVERGED, CACHE, STOPPED = 0, 1, 2, 3, 4, 130
+REPORT_SECONDS = 5.0
+OLDEST = (4, 2)
+
+Tell = Callable[[Mapping[str, Any]], None]
+
+
+class WrongInput(Exception):
+    """The file or the command line is wrong; one sentence."""
+
+
+def addon(name: str) -> Any:
+    """A module of the add-on."""
+    return importlib.import_module(f"{MODULE}.{name}")
+
+
+def bake_file(request: Mapping[str, Any], tell: Tell, is_stopped: Callable[[], bool]) -> int:
+    """Open the file, bake its cloths and return the exit code."""
+    refusal = addon("core.refusal")
+    try:
+        open_file(request["path"])
+        scenes = cloths_by_scene(request["path"])
+        override(request["overrides"])
+        return Baker(request, tell, is_stopped).bake(scenes)
+    except WrongInput as wrong:
+        tell({"kind": "complaint", "text": str(wrong)})
+        return WRONG_INPUT
+    except refusal.CacheRefusal as error:
+        tell({"kind": "complaint", "text": str(error)})
+        return CACHE
+    except refusal.Refusal as error:
+        tell({"kind": "complaint", "text": str(error)})
+        return WRONG_INPUT
+
+
+def open_file(path: str) -> None:
+    """Open a .blend file of this Blender's version or an older one."""
+    import bpy
+
+    try:
+        bpy.ops.wm.open_mainfile(filepath=path, load_ui=False)
+    except RuntimeError as error:
+        reason = " ".join(str(error).removeprefix("Error: ").split())
+        raise WrongInput(
+            f"{path} cannot be opened by Blender {bpy.app.version_string} ({reason}); if it is from "
+            "a newer Blender, name that one: --blender PATH"
+        ) from error
+    made_with = tuple(bpy.data.version[:2])
+    if made_with > tuple(bpy.app.version[:2]):
+        raise WrongInput(
+            f"{path} is from Blender {made_with[0]}.{made_with[1]} and this is Blender "
+            f"{bpy.app.version_string}; name a Blender that is new enough: --blender PATH"
+        )
+
+
+def cloths_by_scene(path: str) -> list[tuple[Any, Any]]:
+    """Every cloth of the file with a scene that it is in."""
+    import bpy
+
+    registry = addon("bridge.registry")
+    found: list[tuple[Any, Any]] = []
+    for scene in bpy.data.scenes:
+        known = {cloth.name for cloth, _ in found}
+        cloths = [cloth for cloth in registry.cloths_of(scene) if cloth.name not in known]
+        found += [(cloth, scene) for cloth in sorted(cloths, key=lambda cloth: cloth.name)]
+    if not found:
+        raise WrongInput(f"{path} holds no Boucle cloth; accepted: a file with at least one")
+    return found
+
+
+def override(words: Sequence[str]) -> None:
+    """Set properties of cloths: "OBJECT.property=value", TOML values."""
+    import bpy
+
+    for text in words:
+        target, equals, written = text.partition("=")
+        name, dot, key = target.strip().rpartition(".")
+        if not equals or not dot:
+            raise WrongInput(f"--set {text}; accepted: OBJECT.property=value")
+        obj = bpy.data.objects.get(name)
+        names = [obj.name for obj in addon("bridge.registry").local_cloths()]
+        if obj is None or obj.name not in names:
+            raise WrongInput(
+                f'--set {text}: "{name}" is no Boucle cloth; accepted: {listed(names)}'
+            )
+        set_property(obj, key, written, text)
+
+
+def set_property(obj: Any, key: str, written: str, text: str) -> None:
+    """Set one property, or say what would be accepted: Blender itself would cut a number without a word."""
+    properties = obj.boucle.bl_rna.properties
+    settable = [p.identifier for p in properties if not p.is_readonly and not p.is_hidden]
+    settable = [name for name in settable if name not in {"name", "rna_type"}]
+    if key not in settable:
+        raise WrongInput(f'--set {text}: "{key}" is no setting; accepted: {listed(settable)}')
+    try:
+        value = tomllib.loads(f"value = {written.strip()}")["value"]
+    except tomllib.TOMLDecodeError as error:
+        raise WrongInput(f"--set {text}: {written.strip()} is no TOML value ({error})") from error
+    prop = properties[key]
+    if prop.type == "FLOAT" and isinstance(value, int) and not isinstance(value, bool):
+        value = float(value)
+    if prop.type in {"INT", "FLOAT"}:
+        check_range(prop, value, text)
+    if prop.type == "BOOLEAN" and not isinstance(value, bool):
+        raise WrongInput(f"--set {text}; accepted: true or false")
+    try:
+        setattr(obj.boucle, key, value)
+    except (TypeError, ValueError) as error:
+        reason = str(error).rpartition(": ")[2]
+        raise WrongInput(f"--set {text} is not accepted ({' '.join(reason.split())})") from error
+
+
+def check_range(prop: Any, value: Any, text: str) -> None:
+    """Refuse numbers that are none, or out of range."""
+    numbers = value if isinstance(value, list) else [value]
+    kinds = int if prop.type == "INT" else (int, float)
+    for number in numbers:
+        is_number = isinstance(number, kinds) and not isinstance(number, bool)
+        if not is_number or not prop.hard_min <= number <= prop.hard_max:
+            kind = "a whole number" if prop.type == "INT" else "a number"
+            raise WrongInput(
+                f"--set {text}; accepted: {kind} from {prop.hard_min:g} to {prop.hard_max:g}"
+            )
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names for a sentence."""
+    return ", ".join(f'"{name}"' for name in names) or "none"
+
+
+class Baker:
+    """Bakes the cloths of a file one after another."""
+
+    def __init__(
+        self, request: Mapping[str, Any], tell: Tell, is_stopped: Callable[[], bool]
+    ) -> None:
+        self.request = request
+        self.tell = tell
+        self.is_stopped = is_stopped
+        self.out: str | None = request["out"]
+        self.bakes: list[Any] = []
+        self._reported = time.monotonic()
+
+    def bake(self, scenes: Sequence[tuple[Any, Any]]) -> int:
+        """Bake them all and return the exit code: the first failure's, with the others still baked."""
+        preflight = addon("bridge.preflight")
+        for cloth, scene in scenes:
+            preflight.refuse_errors(cloth, scene)
+        names = [(cloth.name, scene.name) for cloth, scene in scenes]
+        code = DONE
+        for name, scene_name in names:
+            code = self.bake_one(name, scene_name) or code
+            if code in {STOPPED, CACHE}:
+                break
+        if self.out:
+            self.write_report()
+        else:
+            code = self.save_file() or code
+        if code == DONE:
+            where = self.out or "the file's own caches"
+            count = "1 cloth" if len(names) == 1 else f"{len(names)} cloths"
+            self.tell({"kind": "sentence", "text": f"{count} baked: {where}"})
+        return code
+
+    def bake_one(self, name: str, scene_name: str) -> int:
+        """Bake one cloth and return the exit code."""
+        import bpy
+
+        native, refusal, bridge = addon("native"), addon("core.refusal"), addon("bridge.bake")
+        cloth, scene = bpy.data.objects[name], bpy.data.scenes[scene_name]
+        bake = bridge.Bake(cloth, scene, self.options(cloth))
+        self.bakes.append(bake)
+        self.tell({"kind": "cloth", "text": f"{name}: {len(cloth.data.vertices)} vertices"})
+        steps = bake.steps()
+        try:
+            self.pull(bake, steps)
+            if self.is_stopped():
+                steps.close()
+                return self.complain(bake, GeneratorExit(), STOPPED)
+        except native.DivergedError as error:
+            return self.complain(bake, error, DIVERGED)
+        except (refusal.CacheRefusal, OSError) as error:
+            return self.complain(bake, error, CACHE)
+        except native.InternalError as error:
+            return self.complain(bake, error, FAULT)
+        except (refusal.Refusal, native.BoucleError) as error:
+            return self.complain(bake, error, WRONG_INPUT)
+        if self.out:
+            self.write_rest(bpy.data.objects[name])
+        return DONE
+
+    def pull(self, bake: Any, steps: Any) -> None:
+        """Simulate frame after frame until the end or a request to stop."""
+        for step in steps:
+            step.run()
+            if bake.store is None:  # the solver is built, no frame is simulated yet
+                continue
+            first = bake.store.plan.first
+            event = {"kind": "frame", "frame": step.frame, "first": first, "last": bake.end}
+            self.tell({**event, "seconds": step.seconds})
+            if self.out and time.monotonic() - self._reported > REPORT_SECONDS:
+                self.write_report()
+            if self.is_stopped():
+                return
+
+    def options(self, cloth: Any) -> Any:
+        """How to bake one cloth."""
+        frames = self.request["frames"]
+        if frames:
+            frames = (max(frames[0], cloth.boucle.frame_start), frames[1])
+        files = None
+        if self.out:
+            stem = os.path.join(self.out, file_name(cloth.name))
+            files = addon("core.cache_paths").files_of(f"{stem}.pc2")
+        return addon("bridge.bake").Options(
+            resume=self.request["resume"],
+            frames=frames,
+            files=files,
+            threads=self.request["threads"],
+        )
+
+    def complain(self, bake: Any, error: BaseException, code: int) -> int:
+        """Say in one line what became of a bake, and pass the exit code on."""
+        self.tell({"kind": "complaint", "text": addon("bridge.bake").outcome(bake, error)})
+        return code
+
+    def write_rest(self, cloth: Any) -> None:
+        """The rest mesh as OBJ, in object space as the PC2."""
+        positions = addon("bridge.rest").positions(cloth.data)
+        faces = [list(face.vertices) for face in cloth.data.polygons]
+        path = os.path.join(self.out, f"{file_name(cloth.name)}.obj")
+        addon("core.obj_file").write(path, cloth.name, positions, faces)
+
+    def write_report(self) -> None:
+        """report.json: one for all cloths so far."""
+        report = addon("core.report")
+        reports = [bake.store.rows.as_dict() for bake in self.bakes if bake.store]
+        if reports:
+            content = report.encode(report.joined(reports))
+            addon("core.whole_file").replace(os.path.join(self.out, "report.json"), content)
+        self._reported = time.monotonic()
+
+    def save_file(self) -> int:
+        """Save the .blend, so that it plays the bake."""
+        import bpy
+
+        try:
+            bpy.ops.wm.save_mainfile()
+        except RuntimeError as error:
+            self.tell({"kind": "complaint", "text": f"the file cannot be saved: {error}"})
+            return CACHE
+        return DONE
+
+
+def file_name(name: str) -> str:
+    """An object's name as every file system takes it."""
+    return re.sub(r'[<>:"/\\|?*\x00-\x1f]', "_", name)
+
+
+def run_as_script(request_file: str) -> int:
+    """Bake as the --python of another Blender."""
+    import addon_utils
+    import bpy
+
+    with open(request_file, encoding="utf-8") as file:
+        request = json.load(file)
+
+    def tell(event: Mapping[str, Any]) -> None:
+        print(MARK + json.dumps(event), flush=True)
+
+    if tuple(bpy.app.version[:2]) < OLDEST:
+        text = f"this is Blender {bpy.app.version_string}; accepted: 4.2 or newer"
+        tell({"kind": "complaint", "text": f"--blender: {text}"})
+        return WRONG_INPUT
+    asked: list[int] = []
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda number, _frame: asked.append(number))
+    parent = os.getppid()
+    sys.path.append(request["module"])
+    if addon_utils.enable(MODULE, default_set=True, persistent=True) is None:
+        tell({"kind": "complaint", "text": "the add-on could not be enabled in this Blender"})
+        return FAULT
+    return bake_file(request, tell, lambda: bool(asked) or os.getppid() != parent)
+
+
+if __name__ == "__main__":
+    # Blender's own end may hang after a bake; everything is written and closed by now.
+    exit_code = run_as_script(sys.argv[sys.argv.index("--") + 1])
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(exit_code)

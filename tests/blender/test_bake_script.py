@@ -1,0 +1,243 @@
+"""scripts/bake.py on a .blend: every Boucle cloth, with the contract's files and exit codes."""
+
+import json
+import os
+import signal
+import struct
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+HEADER = struct.Struct("<12siiffi")
+
+
+def make_file(path, columns, end, cloths="1"):
+    import bpy
+    from cloths import add_cloth
+
+    for number in range(int(cloths)):
+        obj = add_cloth(columns=int(columns), rows=int(columns), end=int(end))
+        obj.location.y = float(number)
+        obj.rotation_euler.z = 0.3
+    bpy.context.scene.frame_set(1)
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+
+
+def make_empty_file(path):
+    import bpy
+
+    bpy.ops.mesh.primitive_plane_add()
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+
+
+def look(path):
+    import bpy
+    from cloths import shown_positions
+
+    bpy.ops.wm.open_mainfile(filepath=path)
+    out = []
+    for obj in sorted(bpy.data.objects, key=lambda obj: obj.name):
+        if obj.type == "MESH":
+            bpy.context.scene.frame_set(8)
+            out.append([obj.name, obj.modifiers["Boucle Cache"].filepath, shown_positions(obj)])
+    return out
+
+
+def bake(*words, check=0):
+    command = [sys.executable, str(ROOT / "scripts" / "bake.py"), *map(str, words)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=180, check=False)
+    assert done.returncode == check, done.stdout + done.stderr
+    if check == 2:
+        assert "Traceback" not in done.stderr
+        ours = [line for line in done.stderr.splitlines() if line.startswith("bake.py: ")]
+        assert len(ours) == 1, done.stderr
+    return done
+
+
+def samples(path):
+    return HEADER.unpack(path.read_bytes()[: HEADER.size])
+
+
+def test_a_folder_gets_pc2_obj_report_and_checkpoint_and_the_file_stays_as_it_was(new_blender):
+    path = new_blender.folder / "shot.blend"
+    out = new_blender.folder / "out"
+    new_blender.run(make_file, path=path, columns=8, end=10, cloths=2)
+    before = path.read_bytes()
+    done = bake(path, "--out", out)
+    assert path.read_bytes() == before
+    assert sorted(p.name for p in out.iterdir()) == [
+        "Cloth.001.checkpoint", "Cloth.001.json", "Cloth.001.obj", "Cloth.001.pc2",
+        "Cloth.checkpoint", "Cloth.json", "Cloth.obj", "Cloth.pc2", "report.json",
+    ]  # fmt: skip
+    assert "2 cloths baked" in done.stdout
+    assert samples(out / "Cloth.pc2") == (b"POINTCACHE2\0", 1, 64, 1.0, 1.0, 10)
+    report = json.loads((out / "report.json").read_text())
+    assert [cloth["name"] for cloth in report["cloths"]] == ["Cloth", "Cloth.001"]
+    assert [row["frame"] for row in report["frames"]] == list(range(1, 11))
+    assert report["scene"].endswith("shot.blend")
+    first = struct.unpack("<192f", (out / "Cloth.pc2").read_bytes()[32 : 32 + 12 * 64])
+    vertices = [
+        float(word)
+        for line in (out / "Cloth.obj").read_text().splitlines()
+        if line.startswith("v ")
+        for word in line.split()[1:]
+    ]
+    assert max(abs(a - b) for a, b in zip(first, vertices, strict=True)) < 1e-6
+    bake(path, "--out", out, "--quiet")
+    assert not [p for p in out.iterdir() if "previous" in p.name]
+
+
+def test_without_a_folder_each_cloth_gets_its_own_cache_and_the_file_plays_it(new_blender):
+    path = new_blender.folder / "shot.blend"
+    new_blender.run(make_file, path=path, columns=8, end=10)
+    done = bake(path, "--quiet", "--set", "Cloth.shear=40", "Cloth.limiter='none'")
+    assert "frame" not in done.stdout.replace("frames", "")
+    cache = next((new_blender.folder / "boucle_cache" / "shot").glob("*.pc2"))
+    row = json.loads(cache.with_suffix(".json").read_text())["bake"]["settings"]
+    assert row["cloth.springs.shear"] == 40.0 and row["cloth.springs.limiter"] == "none"
+    name, played, positions = new_blender.run(look, addon=False, path=path)[0]
+    assert name == "Cloth" and played == f"//boucle_cache/shot/{cache.name}"
+    data = cache.read_bytes()[32 + 7 * 12 * 64 : 32 + 8 * 12 * 64]
+    expected = struct.unpack("<192f", data)
+    assert max(abs(a - b) for a, b in zip(positions, expected, strict=True)) < 1e-6
+
+
+def test_frames_keeps_a_range_and_simulates_from_the_start(new_blender):
+    path = new_blender.folder / "shot.blend"
+    new_blender.run(make_file, path=path, columns=8, end=10)
+    whole, part = new_blender.folder / "whole", new_blender.folder / "part"
+    bake(path, "--out", whole)
+    bake(path, "--out", part, "--frames", "4:7", "--threads", "1")
+    assert samples(part / "Cloth.pc2")[3:] == (4.0, 1.0, 4)
+    size = 12 * 64
+    expected = (whole / "Cloth.pc2").read_bytes()[32 + 3 * size : 32 + 7 * size]
+    assert (part / "Cloth.pc2").read_bytes()[32:] == expected
+    rows = json.loads((part / "report.json").read_text())["frames"]
+    assert [row["frame"] for row in rows] == [4, 5, 6, 7]
+
+
+def test_a_bake_that_was_interrupted_or_killed_resumes_bit_equal(new_blender):
+    path = new_blender.folder / "shot.blend"
+    new_blender.run(make_file, path=path, columns=60, end=80)
+    whole, part = new_blender.folder / "whole", new_blender.folder / "part"
+    bake(path, "--out", whole, "--quiet")
+    command = [sys.executable, str(ROOT / "scripts" / "bake.py"), str(path), "--out", str(part)]
+    cache = part / "Cloth.pc2"
+
+    def stop(number, count):
+        with subprocess.Popen([*command, "--resume"], stdout=subprocess.DEVNULL) as process:
+            until = time.monotonic() + 100
+            while time.monotonic() < until and process.poll() is None:
+                if cache.is_file() and cache.stat().st_size >= 32 and samples(cache)[-1] >= count:
+                    process.send_signal(number)
+                    break
+                time.sleep(0.005)
+            return process.wait(timeout=60)
+
+    assert stop(signal.SIGINT, 5) == 130
+    kept = samples(cache)[-1]
+    assert 5 <= kept < 80
+    assert len(json.loads((part / "report.json").read_text())["frames"]) == kept
+    assert stop(signal.SIGKILL, kept + 5) == -signal.SIGKILL
+    body = cache.read_bytes()
+    count = samples(cache)[-1]
+    assert (
+        body[32 : 32 + count * 12 * 3600]
+        == (whole / "Cloth.pc2").read_bytes()[32:][: count * 12 * 3600]
+    )
+    bake(path, "--out", part, "--resume", "--quiet")
+    assert cache.read_bytes() == (whole / "Cloth.pc2").read_bytes()
+
+    def hashes(folder):
+        rows = json.loads((folder / "report.json").read_text())["frames"]
+        return [(row["frame"], row["hash"]) for row in rows]
+
+    assert hashes(part) == hashes(whole)
+    done = bake(path, "--out", part, "--resume", "--set", "Cloth.shear=50", check=2)
+    assert "other settings" in done.stderr
+
+
+def test_wrong_input_is_one_line_that_names_the_culprit(new_blender):
+    path = new_blender.folder / "shot.blend"
+    new_blender.run(make_file, path=path, columns=8, end=10)
+    empty = new_blender.folder / "empty.blend"
+    new_blender.run(make_empty_file, path=empty)
+    junk = new_blender.folder / "junk.blend"
+    junk.write_bytes(b"no blend at all")
+    refusals = {
+        ("missing.blend",): "missing.blend is missing",
+        (junk,): "junk.blend cannot be opened",
+        (empty,): "holds no Boucle cloth",
+        (path, "--set", "Cloth.stretch=-1"): "accepted: a number from 0 to",
+        (path, "--set", "Cloth.stretch=nan"): "accepted: a number from 0 to",
+        (path, "--set", "Cloth.strech=1"): '"strech" is no setting',
+        (path, "--set", "Nobody.stretch=1"): '"Nobody" is no Boucle cloth; accepted: "Cloth"',
+        (path, "--set", "Cloth.limiter='magic'"): "--set Cloth.limiter='magic' is not accepted",
+        (path, "--set", "Cloth.stretch=many"): "many is no TOML value",
+        (path, "--set", "Cloth.substeps=2.5"): "accepted: a whole number",
+        (path, "--set", "Cloth.pin_group='x'"): 'Pin Group "x" is not a vertex group',
+        (path, "--frames", "9:3"): "frames 9 to 3",
+        (path, "--blender", "/nowhere/blender"): "/nowhere/blender cannot be started",
+    }
+    for words, part in refusals.items():
+        assert part in bake(*words, check=2).stderr, words
+
+
+def test_divergence_is_exit_code_3_and_a_folder_that_cannot_be_is_4(new_blender):
+    path = new_blender.folder / "shot.blend"
+    new_blender.run(make_file, path=path, columns=8, end=20)
+    out = new_blender.folder / "out"
+    wild = ["Cloth.stretch=1e6", "Cloth.substeps=1", "Cloth.allow_unstable=true"]
+    done = bake(path, "--out", out, "--set", *wild, "Cloth.limiter='none'", check=3)
+    assert "diverged at frame" in done.stderr and "are kept" in done.stderr
+    assert 2 <= samples(out / "Cloth.pc2")[-1] < 20
+    (new_blender.folder / "file").write_text("in the way")
+    done = bake(path, "--out", new_blender.folder / "file" / "out", check=4)
+    assert "cannot be written" in done.stderr
+
+
+def stand_in_blender(folder, python):
+    """A program that takes Blender's options and runs the bpy package of another Python."""
+    script = folder / "stand_in.py"
+    script.write_text(
+        "import runpy, sys\n"
+        "import bpy\n"
+        "bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)\n"
+        "at = sys.argv.index('--python')\n"
+        "assert sys.argv[1:4] == ['--background', '--factory-startup', '--python-exit-code']\n"
+        "runpy.run_path(sys.argv[at + 1], run_name='__main__')\n"
+    )
+    program = folder / "blender"
+    program.write_text(f'#!/bin/sh\nexec "{python}" "{script}" "$@"\n')
+    program.chmod(0o755)
+    return program
+
+
+def test_another_blender_bakes_in_background_and_refuses_files_from_a_newer_one(blender):
+    path = blender.folder / "shot.blend"
+    blender.run(make_file, path=path, columns=40, end=60)
+    out = blender.folder / "out"
+    python_42 = os.environ.get("BOUCLE_BPY42_PYTHON", str(ROOT / ".venv-bpy42" / "bin" / "python"))
+    old = stand_in_blender(blender.folder, python_42)
+    if blender.version == "4.5":
+        done = bake(path, "--out", out, "--blender", old, check=2)
+        assert "is from Blender 4.5 and this is Blender 4.2" in done.stderr
+        assert "--blender PATH" in done.stderr
+        return
+    done = bake(path, "--out", out, "--blender", old)
+    assert samples(out / "Cloth.pc2")[-1] == 60
+    assert "1 cloth baked" in done.stdout
+    command = [sys.executable, str(ROOT / "scripts" / "bake.py"), str(path)]
+    command += ["--out", str(blender.folder / "stopped"), "--blender", str(old)]
+    cache = blender.folder / "stopped" / "Cloth.pc2"
+    with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
+        until = time.monotonic() + 60
+        while time.monotonic() < until and not cache.is_file():
+            time.sleep(0.005)
+        process.terminate()
+        assert process.wait(timeout=60) == 130
+    assert 1 <= samples(cache)[-1] < 60
+    bake(path, "--out", cache.parent, "--blender", old, "--resume")
+    assert cache.read_bytes() == (out / "Cloth.pc2").read_bytes()

@@ -11,6 +11,8 @@ import bpy
 
 TOP = 2.05
 """Height (m) of the rod that the cloth hangs from."""
+RING = 0.026
+"""Radius (m) of the rings on the rod."""
 FLOOR = 0.0
 WALL = 1.1
 """Distance (m) of the wall behind the cloth."""
@@ -30,6 +32,11 @@ def dress(cloth: bpy.types.Object, rod_length: float) -> None:
     build_rod(rod_length)
     light_room()
     place_camera()
+
+
+def color_socket(sockets: bpy.types.bpy_prop_collection, name: str) -> bpy.types.NodeSocket:
+    """The colour socket of a name that a node has for several kinds of values."""
+    return next(socket for socket in sockets if socket.name == name and socket.type == "RGBA")
 
 
 def refine(cloth: bpy.types.Object) -> None:
@@ -67,24 +74,21 @@ def boucle_material() -> bpy.types.Material:
     links.new(wobble.outputs["Color"], bend.inputs[0])
     links.new(where.outputs["UV"], bend.inputs[2])
     knots = nodes.new("ShaderNodeTexVoronoi")
-    knots.feature = "SMOOTH_F1"
-    knots.inputs["Scale"].default_value = 170.0
-    knots.inputs["Smoothness"].default_value = 0.35
+    knots.inputs["Scale"].default_value = 200.0
     links.new(bend.outputs["Vector"], knots.inputs["Vector"])
     shade = nodes.new("ShaderNodeValToRGB")
-    shade.color_ramp.elements[0].color = (*(1.25 * c for c in YARN), 1.0)
-    shade.color_ramp.elements[1].color = (*(0.35 * c for c in YARN), 1.0)
-    shade.color_ramp.elements[1].position = 0.75
+    shade.color_ramp.elements[0].color = (*(1.2 * c for c in YARN), 1.0)
+    shade.color_ramp.elements[1].color = (*(0.55 * c for c in YARN), 1.0)
+    shade.color_ramp.elements[1].position = 0.8
     links.new(knots.outputs["Distance"], shade.inputs["Fac"])
     mottle = nodes.new("ShaderNodeMix")
     mottle.data_type, mottle.blend_type = "RGBA", "OVERLAY"
-    mottle.inputs["Factor"].default_value = 0.35
-    links.new(shade.outputs["Color"], mottle.inputs["A"])
-    links.new(knots.outputs["Color"], mottle.inputs["B"])
+    mottle.inputs["Factor"].default_value = 0.15
+    links.new(shade.outputs["Color"], color_socket(mottle.inputs, "A"))
     grey = nodes.new("ShaderNodeRGBToBW")
     links.new(knots.outputs["Color"], grey.inputs["Color"])
-    links.new(grey.outputs["Val"], mottle.inputs["B"])
-    links.new(mottle.outputs["Result"], shader.inputs["Base Color"])
+    links.new(grey.outputs["Val"], color_socket(mottle.inputs, "B"))
+    links.new(color_socket(mottle.outputs, "Result"), shader.inputs["Base Color"])
     relief = nodes.new("ShaderNodeBump")
     relief.invert = True
     relief.inputs["Strength"].default_value = 0.9
@@ -137,6 +141,26 @@ def build_rod(length: float) -> None:
             polygon.use_smooth = True
 
 
+def build_rings(places: list[float]) -> list[bpy.types.Object]:
+    """A brass ring on the rod at each place along it (m), for the cloth to hang from."""
+    brass = bpy.data.materials["Brass"]
+    rings = []
+    for x in places:
+        bpy.ops.mesh.primitive_torus_add(
+            major_segments=32,
+            minor_segments=10,
+            major_radius=RING,
+            minor_radius=0.0032,
+            location=(x, 0, TOP - RING + 0.013),
+            rotation=(0, 0.5 * math.pi, 0),
+        )
+        ring = bpy.context.object
+        ring.name = "Ring"
+        ring.data.materials.append(brass)
+        rings.append(ring)
+    return rings
+
+
 def area_light(
     name: str, place: tuple, target: tuple, size: float, power: float, color: tuple
 ) -> None:
@@ -172,9 +196,9 @@ def light_room() -> None:
 def place_camera() -> None:
     """A portrait lens, a little to the right of the middle."""
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.data.lens = 55.0
-    camera.location = (0.75, -4.6, 1.35)
-    camera.rotation_euler = look(camera.location, (0.0, 0.0, 1.18))
+    camera.data.lens = 62.0
+    camera.location = (0.9, -4.3, 1.30)
+    camera.rotation_euler = look(camera.location, (0.0, 0.0, 1.10))
     bpy.context.scene.collection.objects.link(camera)
     bpy.context.scene.camera = camera
 
@@ -187,7 +211,8 @@ def prepare_render(width: int, height: int, samples: int) -> None:
     scene.cycles.samples = samples
     scene.cycles.use_adaptive_sampling = True
     scene.cycles.use_denoising = True
-    scene.cycles.max_bounces = 5
+    scene.cycles.max_bounces = 3
+    scene.cycles.diffuse_bounces = 2
     scene.render.resolution_x, scene.render.resolution_y = width, height
     scene.render.resolution_percentage = 100
     scene.render.use_persistent_data = True

@@ -78,10 +78,10 @@ class Bake:
         matrix = sampling.object_matrix(obj, depsgraph)
         rest_world = points.transform(sampling.targets(obj, depsgraph), matrix, "d")
         build = Step(start, simulation.maker(obj, description, rest_world, self.options.threads))
+        record = self._record(obj, description)
         yield build
         solver = build.result()
-        record = self._record(obj, description)
-        self.store = self._make_store(obj, description, record, solver)
+        self.store = self._make_store(self._object(), description, record, solver)
         is_pinned = simulation.is_pinned(description)
         try:
             yield from core_bake.bake(

@@ -68,7 +68,7 @@ def transform(points: Points, matrix: Affine, kind: str) -> Points:
     numpy = _numpy()
     if numpy is None:
         return _transform_slowly(points, matrix, kind)
-    flat = numpy.frombuffer(points, dtype=numpy.asarray(points).dtype)
+    flat = numpy.asarray(points)
     if matrix == IDENTITY:
         return flat.astype(kind)
     rows = numpy.array(matrix, dtype=numpy.float64).reshape(3, 4)

@@ -41,6 +41,10 @@ class _Baking:
         """Bake beside a living window."""
         if bpy.app.background or context.window is None:
             return self.execute(context)
+        self._begin(context)
+        return {"RUNNING_MODAL"}
+
+    def _begin(self, context: Context) -> None:
         self._bakes = self._make_bakes(context)
         self._current: Bake | None = None
         self._steps: Iterator[Step] | None = None
@@ -49,7 +53,6 @@ class _Baking:
         self._messages: list[tuple[str, str]] = []
         self._timer: Timer = context.window_manager.event_timer_add(_TICK, window=context.window)
         context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
 
     def execute(self, context: Context) -> set[str]:
         """Bake to the end without interaction, for scripts and background Blender."""

@@ -1,0 +1,220 @@
+"""Bake in a window: the modal operator's own code, with stand-ins for the window that the bpy package has not."""
+
+
+class Manager:
+    """Takes the place of a window manager."""
+
+    def __init__(self):
+        self.timers = 0
+        self.handlers = []
+
+    def event_timer_add(self, _seconds, window):
+        del window
+        self.timers += 1
+        return "timer"
+
+    def event_timer_remove(self, timer):
+        assert timer == "timer"
+        self.timers -= 1
+
+    def modal_handler_add(self, operator):
+        self.handlers.append(operator)
+
+
+class Workspace:
+    """Takes the place of a workspace with its status bar."""
+
+    def __init__(self):
+        self.texts = []
+
+    def status_text_set(self, text):
+        self.texts.append(text)
+
+
+def window(cloths):
+    import bpy
+
+    class Context:
+        window_manager = Manager()
+        workspace = Workspace()
+        window = None
+        scene = bpy.context.scene
+        object = cloths[0]
+
+    return Context()
+
+
+def operator(context, cloths, resume=False):
+    """The operator's code without Blender's instance of it."""
+    from cloths import addon
+
+    kind = addon("operators.bake")._Baking
+
+    class Baking(kind):
+        def __init__(self):
+            self.said = []
+            self.resume = resume
+
+        def cloths(self, _context):
+            return cloths
+
+        def report(self, kinds, text):
+            self.said.append([*kinds, text])
+
+    baking = Baking()
+    baking._begin(context)
+    return baking
+
+
+class Event:
+    """A timer's tick or a key."""
+
+    def __init__(self, kind, value="PRESS"):
+        self.type = kind
+        self.value = value
+
+
+def run_to_the_end(baking, context):
+    ticks = 0
+    while True:
+        ticks += 1
+        state = baking.modal(context, Event("TIMER"))
+        if state != {"RUNNING_MODAL"}:
+            return state, ticks
+        assert baking.modal(context, Event("MOUSEMOVE")) == {"RUNNING_MODAL"}
+        assert ticks < 10_000
+
+
+def bake_in_a_window():
+    import threading
+
+    import bpy
+    from cloths import add_cloth, addon, shown_positions
+
+    one, two = add_cloth(end=40, columns=20, rows=20), add_cloth(end=9)
+    context = window([one])
+    runtime = addon("bridge.runtime")
+    threads = set()
+    core = addon("core.bake")
+    real = core.Step.run
+
+    def run(step):
+        if step.frame > 1:  # the rest pose is only read
+            threads.add(threading.current_thread().name)
+        real(step)
+
+    core.Step.run = run
+    baking = operator(context, [one, two])
+    polls = []
+    first = baking.modal(context, Event("TIMER"))
+    if first == {"RUNNING_MODAL"}:
+        polls.append(bpy.ops.boucle.bake.poll() or "bake" not in runtime.busy)
+    state, _ = run_to_the_end(baking, context)
+    core.Step.run = real
+    bpy.context.scene.frame_set(40)
+    windowed = shown_positions(one)
+    bpy.context.view_layer.objects.active = one
+    bpy.ops.boucle.bake()
+    bpy.context.scene.frame_set(40)
+    return {
+        "state": list(state),
+        "said": baking.said,
+        "texts": context.workspace.texts,
+        "timers": context.window_manager.timers,
+        "same": windowed == shown_positions(one),
+        "status": [one.boucle.status, two.boucle.status],
+        "threads": sorted(threads),
+        "polls": polls,
+        "busy": list(runtime.busy),
+    }
+
+
+def test_a_window_bakes_beside_its_events_and_the_result_is_that_of_a_script(blender):
+    result = blender.run(bake_in_a_window)
+    assert result["state"] == ["FINISHED"]
+    assert [kind for kind, _ in result["said"]] == ["INFO", "INFO"]
+    assert result["same"]
+    assert result["status"][0].startswith("Baked: frames 1 to 40")
+    assert result["status"][1].startswith("Baked: frames 1 to 9")
+    assert all(name.startswith("boucle") for name in result["threads"])
+    assert not any(result["polls"])
+    assert result["timers"] == 0 and result["busy"] == []
+    assert result["texts"][-1] is None
+    assert any(
+        "frame 30/40" in text and "Esc stops and keeps" in text for text in result["texts"][:-1]
+    )
+
+
+def stop_in_a_window():
+    import bpy
+    from cloths import add_cloth, addon, mesh_positions
+
+    obj, never = add_cloth(end=2000, columns=30, rows=30), add_cloth(end=9)
+    rest = mesh_positions(obj)
+    context = window([obj])
+    baking = operator(context, [obj, never])
+    for _ in range(3):
+        assert baking.modal(context, Event("TIMER")) == {"RUNNING_MODAL"}
+    assert baking.modal(context, Event("ESC", "RELEASE")) == {"RUNNING_MODAL"}
+    state = baking.modal(context, Event("ESC"))
+    stopped = obj.boucle.status
+    again = operator(context, [obj], resume=True)
+    again.modal(context, Event("TIMER"))
+    again.cancel(context)
+    return {
+        "state": list(state),
+        "said": baking.said,
+        "stopped": stopped,
+        "cancelled": obj.boucle.status,
+        "never": never.boucle.status,
+        "timers": context.window_manager.timers,
+        "busy": list(addon("bridge.runtime").busy),
+        "rest": mesh_positions(obj) == rest,
+        "frame": bpy.context.scene.frame_current,
+    }
+
+
+def test_esc_stops_keeps_and_resume_goes_on(blender):
+    result = blender.run(stop_in_a_window)
+    assert result["state"] == ["FINISHED"]
+    assert [kind for kind, _ in result["said"]] == ["WARNING"]
+    assert "was stopped" in result["said"][0][1] and "Resume goes on" in result["said"][0][1]
+    assert result["stopped"].startswith("Partly baked: frames 1 to ")
+    assert result["cancelled"].startswith("Partly baked: frames 1 to ")
+
+    def last(status):
+        return int(status.split(" to ")[1].split(" ")[0])
+
+    assert last(result["cancelled"]) > last(result["stopped"]) > 1
+    assert result["never"].startswith("Not baked")
+    assert result["timers"] == 0 and result["busy"] == []
+    assert result["rest"] and result["frame"] == 1
+
+
+def lose_the_cloth():
+    import bpy
+    from cloths import add_cloth, addon
+
+    bad, good = add_cloth(end=2000), add_cloth(end=9)
+    bad_name = bad.name
+    context = window([bad])
+    baking = operator(context, [bad, good])
+    assert baking.modal(context, Event("TIMER")) == {"RUNNING_MODAL"}
+    bpy.data.objects.remove(bad)
+    state, _ = run_to_the_end(baking, context)
+    return [
+        list(state),
+        baking.said,
+        good.boucle.status,
+        bad_name,
+        list(addon("bridge.runtime").busy),
+    ]
+
+
+def test_a_cloth_that_is_deleted_during_its_bake_ends_it_in_one_sentence(blender):
+    state, said, other, name, busy = blender.run(lose_the_cloth)
+    assert state == ["CANCELLED"]
+    assert [kind for kind, _ in said] == ["ERROR", "INFO"]
+    assert f'"{name}" is no Boucle cloth any more' in said[0][1]
+    assert other.startswith("Baked: frames 1 to 9")
+    assert busy == []

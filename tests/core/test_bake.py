@@ -1,0 +1,208 @@
+"""The bake's generator with the real solver: whatever stops it, what is there is right."""
+
+import json
+from array import array
+
+import boucle_core
+import pytest
+from boucle_addon.core import bake, pc2, points, report, scene_json
+from boucle_addon.core.bake import Plan, Pose, Store
+from boucle_addon.core.cache_paths import files_of
+from boucle_addon.core.refusal import CacheRefusal, Refusal
+
+END = 12
+SIDE = 5
+MOVED = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 2.0, -3.0)
+TO_OBJECT = points.inverse(MOVED)
+
+
+def grid():
+    positions = array("d", [v for k in range(SIDE**2) for v in (k % SIDE / 4, 0.0, k // SIDE / 4)])
+    corners = array("i")
+    for k in range((SIDE - 1) ** 2):
+        low = k // (SIDE - 1) * SIDE + k % (SIDE - 1)
+        corners.extend([low, low + 1, low + SIDE + 1, low + SIDE])
+    return positions, array("i", range(0, len(corners), 4)), corners
+
+
+def solver(**springs):
+    scene = {
+        "scene": {"frames": [1, END], "fps": 24.0, "gravity": [0.0, 0.0, -9.81]},
+        "cloth": [{
+            "name": "A", "density": 0.2, "pins": {"vertices": [20, 24]},
+            "springs": {"stretch": 500.0, "damping": 0.01, **springs},
+        }],
+        "solver": {"substeps": 400, "allow_unstable": True},
+    }  # fmt: skip
+    return boucle_core.Simulation(scene_json.encode(scene), [grid()], 1)
+
+
+def store(folder, digest="d", first=1, keeps_previous=True):
+    rows = report.Report("0.1.0", "", 1, {"name": "A"})
+    plan = Plan(1, first, END, SIDE**2, digest)
+    return Store(files_of(str(folder / "a.pc2")), plan, rows, keeps_previous)
+
+
+def pose(frame):
+    """Pins that sway, in an object that is moved and scaled."""
+    moved = points.transform(grid()[0], (1, 0, 0, 0.02 * frame, *points.IDENTITY[4:]), "d")
+    return Pose(moved, TO_OBJECT)
+
+
+def pull(simulation, kept, steps=None, resume=False):
+    """Bake, or stop after some steps; what the steps' frames were."""
+    running = bake.bake(simulation, kept, pose, resume, boucle_core.InternalError)
+    frames = []
+    for step in running:
+        step.run()
+        frames.append(step.frame)
+        if steps is not None and len(frames) == steps:
+            running.close()
+            break
+    return frames
+
+
+@pytest.fixture
+def whole(tmp_path):
+    folder = tmp_path / "whole"
+    assert pull(solver(), store(folder)) == list(range(2, END + 1))
+    return folder
+
+
+def test_a_bake_has_a_sample_and_a_row_for_every_frame(whole):
+    header = pc2.read_header(str(whole / "a.pc2"))
+    assert header == (SIDE**2, 1.0, END)
+    rows = json.loads((whole / "a.json").read_text())["frames"]
+    assert [row["frame"] for row in rows] == list(range(1, END + 1))
+    rest = points.transform(grid()[0], TO_OBJECT, "f")
+    assert list(pc2.read_sample(str(whole / "a.pc2"), 0)) == list(rest)
+    pin = pc2.read_sample(str(whole / "a.pc2"), END - 1)[60:63]
+    assert list(pin) == pytest.approx([0.02 * END, 0.0, 2.0], abs=1e-6)
+
+
+@pytest.mark.parametrize("steps", range(1, END))
+def test_stopped_after_any_step_it_goes_on_bit_equal(whole, tmp_path, steps):
+    folder = tmp_path / "part"
+    pull(solver(), store(folder), steps=steps)
+    assert pc2.read_header(str(folder / "a.pc2")).sample_count == steps + 1
+    assert pc2.check(str(folder / "a.pc2"), SIDE**2) == ""
+    kept = store(folder)
+    assert pull(solver(), kept, resume=True) == list(range(steps + 2, END + 1))
+    assert (folder / "a.pc2").read_bytes() == (whole / "a.pc2").read_bytes()
+    hashes = [
+        [(row["frame"], row["hash"]) for row in json.loads((f / "a.json").read_text())["frames"]]
+        for f in (folder, whole)
+    ]
+    assert hashes[0] == hashes[1]
+
+
+def test_a_step_that_was_asked_for_and_never_run_is_not_kept(tmp_path):
+    running = bake.bake(solver(), store(tmp_path), pose, False, boucle_core.InternalError)
+    next(running)
+    running.close()
+    assert pc2.read_header(str(tmp_path / "a.pc2")).sample_count == 1
+    with pytest.raises(RuntimeError, match="must run"):
+        bake.Step(2, lambda: None).result()
+
+
+def test_after_a_kill_the_last_checkpoint_counts_and_later_samples_are_made_again(whole, tmp_path):
+    folder = tmp_path / "part"
+    pull(solver(), store(folder), steps=4)
+    checkpoint = (folder / "a.checkpoint").read_bytes()
+    pull(solver(), store(folder), resume=True, steps=3)
+    (folder / "a.checkpoint").write_bytes(checkpoint)  # as if the later one was never written
+    assert pull(solver(), store(folder), resume=True) == list(range(6, END + 1))
+    assert (folder / "a.pc2").read_bytes() == (whole / "a.pc2").read_bytes()
+
+
+def test_nothing_to_resume_means_a_start_and_a_finished_bake_means_nothing(whole):
+    before = (whole / "a.pc2").read_bytes()
+    assert pull(solver(), store(whole), resume=True) == []
+    assert (whole / "a.pc2").read_bytes() == before
+
+
+def test_another_cloths_checkpoint_is_refused_and_kept(whole):
+    before = (whole / "a.pc2").read_bytes()
+    with pytest.raises(Refusal, match="other settings or another mesh"):
+        pull(solver(), store(whole, digest="other"), resume=True)
+    with pytest.raises(boucle_core.BoucleError):
+        pull(solver(stretch=400.0), store(whole), resume=True)
+    assert (whole / "a.pc2").read_bytes() == before
+
+
+def test_frames_before_the_first_kept_one_are_simulated_and_left_out(whole, tmp_path):
+    folder = tmp_path / "late"
+    pull(solver(), store(folder, first=9))
+    size = 12 * SIDE**2
+    assert pc2.read_header(str(folder / "a.pc2")) == (SIDE**2, 9.0, 4)
+    assert (folder / "a.pc2").read_bytes()[32:] == (whole / "a.pc2").read_bytes()[32 + 8 * size :]
+    folder = tmp_path / "late in parts"
+    pull(solver(), store(folder, first=9), steps=3)
+    pull(solver(), store(folder, first=9), resume=True)
+    assert (folder / "a.pc2").read_bytes()[32:] == (whole / "a.pc2").read_bytes()[32 + 8 * size :]
+
+
+def test_an_earlier_bake_is_set_aside_or_removed(whole):
+    pull(solver(), store(whole), steps=2)
+    assert pc2.read_header(str(whole / "a.previous.pc2")).sample_count == END
+    pull(solver(), store(whole, keeps_previous=False), steps=2)
+    assert pc2.read_header(str(whole / "a.previous.pc2")).sample_count == END
+    assert sorted(p.name for p in whole.iterdir() if "previous" not in p.name) == [
+        "a.checkpoint", "a.json", "a.pc2",
+    ]  # fmt: skip
+
+
+def test_divergence_keeps_the_frames_and_a_checkpoint_before_it(tmp_path):
+    wild = {"stretch": 1e9, "limiter": "none", "damping": 0.0}
+    with pytest.raises(boucle_core.DivergedError) as raised:
+        pull(solver(**wild), store(tmp_path))
+    count = pc2.read_header(str(tmp_path / "a.pc2")).sample_count
+    assert count == raised.value.frame - 1
+    with pytest.raises(boucle_core.DivergedError) as again:
+        pull(solver(**wild), store(tmp_path), resume=True)
+    assert str(again.value) == str(raised.value)
+
+
+class Wrapped:
+    """A solver with one thing changed."""
+
+    def __init__(self, inner, **changes):
+        self.inner = inner
+        self.changes = changes
+
+    def __getattr__(self, name):
+        return self.changes.get(name) or getattr(self.inner, name)
+
+
+def test_after_a_fault_the_solver_is_not_touched_again(tmp_path):
+    inner = solver()
+    touched = []
+
+    def advance():
+        if inner.frame == 3:
+            raise boucle_core.InternalError("a fault")
+        return inner.advance()
+
+    broken = Wrapped(inner, advance=advance, checkpoint=lambda: touched.append(1) or b"")
+    with pytest.raises(boucle_core.InternalError):
+        pull(broken, store(tmp_path))
+    assert not touched
+    assert pc2.read_header(str(tmp_path / "a.pc2")).sample_count == 3
+    assert len(json.loads((tmp_path / "a.json").read_text())["frames"]) == 3
+
+
+def test_a_full_disk_keeps_the_frames_before_it_and_no_checkpoint_that_is_ahead(tmp_path):
+    kept = store(tmp_path)
+    real = kept.write
+
+    def write(frame, *rest):
+        if frame == 5:
+            raise CacheRefusal("the cache cannot be written (disk full)")
+        real(frame, *rest)
+
+    kept.write = write
+    with pytest.raises(CacheRefusal, match="disk full"):
+        pull(solver(), kept)
+    assert pc2.read_header(str(tmp_path / "a.pc2")).sample_count == 4
+    assert not (tmp_path / "a.checkpoint").exists()
+    assert len(json.loads((tmp_path / "a.json").read_text())["frames"]) == 4

@@ -1,0 +1,105 @@
+import json
+from array import array
+
+import boucle_core
+import pytest
+from boucle_addon.core import scene_json
+from boucle_addon.core.refusal import Refusal
+from boucle_addon.core.scene_json import Groups, World
+
+VALUES = {
+    "frame_start": 1, "frame_end": 50, "mass_mode": "density", "density": 0.2, "mass_per_vertex": 0.1,
+    "stretch": 500.0, "shear": 100.0, "bend": 5.0, "damping": 0.01, "damping_per_kind": False,
+    "damping_stretch": 0.1, "damping_shear": 0.2, "damping_bend": 0.3, "damping_law": "relative",
+    "air_damping": 0.001, "deformation_rate": 0.10000000149011612, "limiter": "project",
+    "integrator": "symplectic_euler", "substeps": 0, "time_step": 0.0, "allow_unstable": False,
+    "use_wind": False, "wind_velocity": (0.0, 3.0, 0.0), "wind_law": "vertex",
+    "wind_coefficient": 0.02, "wind_air_density": 1.2,
+}  # fmt: skip
+WORLD = World((0.0, 0.0, -9.8100004196167), 24.0)
+GROUPS = Groups([2, 3], None)
+
+
+def described(world=WORLD, groups=GROUPS, **changes):
+    return scene_json.describe("Cloth", {**VALUES, **changes}, world, groups)
+
+
+def simulation(scene):
+    """The solver on a quad of 1 m."""
+    positions = array("d", [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0])
+    mesh = (positions, array("i", [0]), array("i", [0, 1, 2, 3]))
+    return boucle_core.Simulation(scene_json.encode(scene), [mesh])
+
+
+def test_numbers_are_those_that_the_user_typed():
+    scene = described()
+    assert scene["cloth"][0]["springs"]["deformation_rate"] == 0.1
+    assert scene["scene"] == {"frames": [1, 50], "fps": 24.0, "gravity": [0.0, 0.0, -9.81]}
+    assert json.loads(scene_json.encode(scene)) == scene
+
+
+def test_mass_damping_and_steps_are_given_one_way_each():
+    cloth = described()["cloth"][0]
+    assert cloth["density"] == 0.2 and "mass_per_vertex" not in cloth
+    assert cloth["springs"]["damping"] == 0.01 and "damping_bend" not in cloth["springs"]
+    cloth = described(mass_mode="vertex", damping_per_kind=True)["cloth"][0]
+    assert cloth["mass_per_vertex"] == 0.1 and "density" not in cloth
+    assert cloth["springs"]["damping_bend"] == 0.3 and "damping" not in cloth["springs"]
+    assert described()["solver"]["substeps"] == "auto"
+    assert described(substeps=9)["solver"]["substeps"] == 9
+    assert "substeps" not in described(time_step=0.001)["solver"]
+
+
+def test_pins_and_wind_are_there_only_if_they_act():
+    assert described()["cloth"][0]["pins"] == {"vertices": [2, 3]}
+    assert "pins" not in described(groups=Groups([], None))["cloth"][0]
+    assert "force" not in described()
+    wind = described(use_wind=True)["force"][0]
+    assert wind == {"kind": "wind", "velocity": [0.0, 3.0, 0.0], "coefficient": 0.02}
+    wind = described(use_wind=True, wind_law="face", groups=Groups([], [1]))["force"][0]
+    assert wind["air_density"] == 1.2 and wind["region"] == {"vertices": [1]}
+    assert "force" not in described(use_wind=True, groups=Groups([], []))
+
+
+def test_contradictions_are_refused():
+    with pytest.raises(Refusal, match=r"Substeps is 3 and Time Step is 0\.01 s"):
+        described(substeps=3, time_step=0.01)
+    with pytest.raises(Refusal, match="the end frame is 0, before the start frame 1"):
+        described(frame_end=0)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"mass_mode": "vertex"},
+        {"damping_per_kind": True, "damping_law": "axial"},
+        {"substeps": 500},
+        {"time_step": 0.0001},
+        {"use_wind": True},
+        {"use_wind": True, "wind_law": "face"},
+        {"frame_start": -10, "frame_end": -10},
+        *({"limiter": name} for name in ("none", "stiffen", "provot", "project")),
+        *(
+            {"integrator": name, "damping": 0.0 if name == "leapfrog" else 0.01}
+            for name in ("symplectic_euler", "verlet", "leapfrog", "midpoint", "rk4")
+        ),
+        {"integrator": "forward_euler", "air_damping": 0.5, "damping": 0.5},
+    ],
+)
+def test_the_solver_takes_every_description(changes):
+    solver = simulation(described(**changes))
+    assert solver.frame == {**VALUES, **changes}["frame_start"]
+    assert solver.advance()["frame"] == solver.frame
+
+
+def test_the_solver_takes_groups():
+    solver = simulation(described(use_wind=True, groups=Groups([0, 3], [1, 2])))
+    before = array("d", bytes(96))
+    solver.read_positions(0, before)
+    for _ in range(5):
+        solver.advance()
+    after = array("d", bytes(96))
+    solver.read_positions(0, after)
+    assert after[:3] == before[:3] and after[9:] == before[9:]
+    assert after[3:9] != before[3:9]

@@ -112,7 +112,7 @@ fn exception<'py>(
 ) -> PyResult<Bound<'py, PyType>> {
     let py = module.py();
     let members = PyDict::new(py);
-    members.set_item("__module__", module.name()?)?;
+    members.set_item("__module__", "boucle_core")?;
     members.set_item("__doc__", doc)?;
     let made = py.get_type::<PyType>().call1((name, PyTuple::new(py, bases)?, members))?;
     module.add(name, &made)?;

@@ -5,6 +5,7 @@
 use boucle_geometry::Vector;
 use boucle_scene::limits::{MAX_LENGTH, MAX_VERTICES};
 use pyo3::buffer::{Element, PyBuffer, PyUntypedBuffer};
+use pyo3::exceptions::PyBufferError;
 use pyo3::prelude::*;
 
 use crate::boundary::refuse;
@@ -96,11 +97,23 @@ pub(crate) fn write_numbers(array: &Bound<'_, PyAny>, numbers: &[f32]) -> PyResu
 }
 
 fn contiguous(array: &Bound<'_, PyAny>, what: &str) -> PyResult<PyUntypedBuffer> {
-    let buffer = PyUntypedBuffer::get(array)?;
-    if buffer.is_c_contiguous() {
-        return Ok(buffer);
+    let py = array.py();
+    let buffer = PyUntypedBuffer::get(array).map_err(|error| {
+        if error.is_instance_of::<PyBufferError>(py) {
+            return refuse(py, format!("{what} cannot be read: {error}; accepted: plain arrays"));
+        }
+        error
+    })?;
+    if !buffer.is_c_contiguous() {
+        let accepted = "accepted: C-contiguous arrays";
+        return Err(refuse(py, format!("{what} is not C-contiguous; {accepted}")));
     }
-    Err(refuse(array.py(), format!("{what} is not C-contiguous; accepted: C-contiguous arrays")))
+    // PyO3 looks at the type alone, and would take another machine's byte order for ours.
+    let foreign: &[u8] = if cfg!(target_endian = "little") { b">!" } else { b"<" };
+    if buffer.format().to_bytes().first().is_some_and(|order| foreign.contains(order)) {
+        return Err(wrong_numbers(py, &buffer, what, "this machine's byte order"));
+    }
+    Ok(buffer)
 }
 
 /// How many rows of three numbers a buffer holds.

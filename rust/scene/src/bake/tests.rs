@@ -1,1 +1,233 @@
+use super::*;
+use crate::checkpoint;
+use crate::pc2;
 
+const SCENE: &str = r#"
+[scene]
+frames = [1, 12]
+[[cloth]]
+name = "sheet"
+grid = { size = [1, 1], vertices = [6, 6], plane = "xy" }
+pins = [{ names = ["left"], motion = [{ frame = 1 }, { frame = 8, location = [0.2, 0, 0.3], rotation_deg = [20, 0, 0] }], release = 9 }, "top_right"]
+[[cloth]]
+name = "other"
+grid = { size = [1, 1], vertices = [5, 4], plane = "xz", center = [3, 0, 0] }
+pins = ["top"]
+"#;
+
+/// A folder with a scene file in it.
+struct Place(tempfile::TempDir);
+
+impl Place {
+    fn new(scene: &str) -> Self {
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(folder.path().join("scene.toml"), scene).expect("there is room");
+        Self(folder)
+    }
+
+    fn request(&self, out: &str) -> Request {
+        let scene = self.0.path().join("scene.toml");
+        Request { scene, out: self.0.path().join(out), threads: 1, ..Request::default() }
+    }
+
+    fn bytes(&self, file: &str) -> Vec<u8> {
+        std::fs::read(self.0.path().join(file)).expect(file)
+    }
+
+    /// The hashes of all frames of a report, each with its frame.
+    fn hashes(&self, out: &str) -> Vec<(i64, String)> {
+        let text = self.bytes(&format!("{out}/report.json"));
+        let report: serde_json::Value = serde_json::from_slice(&text).expect("strict JSON");
+        let row = |row: &serde_json::Value| {
+            let hash = row["hash"].as_str().expect("a hash").to_owned();
+            (row["frame"].as_i64().expect("a frame"), hash)
+        };
+        report["frames"].as_array().expect("rows").iter().map(row).collect()
+    }
+}
+
+fn whole(request: &Request) -> Report {
+    let (ending, report) = bake(request, &mut |_| ControlFlow::Continue(())).expect("a good scene");
+    assert_eq!(ending, Ending::Done);
+    report
+}
+
+/// Bakes until a frame is done, and stops.
+fn stopped_at(request: &Request, frame: i32) {
+    let mut observe = |step: &Progress| {
+        if step.frame == frame { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let (ending, _) = bake(request, &mut observe).expect("a good scene");
+    assert_eq!(ending, Ending::Stopped);
+}
+
+#[test]
+fn a_bake_leaves_a_cache_a_mesh_and_a_row_for_every_frame() {
+    let place = Place::new(SCENE);
+    let mut told = Vec::new();
+    let mut observe = |step: &Progress| {
+        told.push(step.frame);
+        assert_eq!((step.first, step.last), (1, 12));
+        ControlFlow::Continue(())
+    };
+    bake(&place.request("out"), &mut observe).expect("a good scene");
+    assert_eq!(told, (1..=12).collect::<Vec<_>>());
+    let (header, numbers) = pc2::read(&place.0.path().join("out/sheet.pc2")).expect("a cache");
+    let expected = pc2::Header { vertex_count: 36, first_frame: 1, sample_count: 12 };
+    assert_eq!(header, expected);
+    assert_eq!(&numbers[..3], &[-0.5, -0.5, 0.0]);
+    let frames: Vec<i64> = place.hashes("out").iter().map(|row| row.0).collect();
+    assert_eq!(frames, (1..=12).collect::<Vec<_>>());
+    let mesh = place.bytes("out/other.obj");
+    let (mesh, _) = crate::obj::read(&mesh[..], Default::default()).expect("our own file");
+    assert_eq!((mesh.vertex_count(), mesh.face_count()), (20, 12));
+}
+
+#[test]
+fn moved_pins_are_where_their_keyframes_say_and_fall_after_their_release() {
+    let place = Place::new(SCENE);
+    whole(&place.request("out"));
+    let (_, numbers) = pc2::read(&place.0.path().join("out/sheet.pc2")).expect("a cache");
+    let vertex = |frame: usize, vertex: usize| {
+        let start = 3 * (36 * (frame - 1) + vertex);
+        [numbers[start], numbers[start + 1], numbers[start + 2]]
+    };
+    // Vertex 0 rests at (-0.5, -0.5, 0): turned by 20 degrees about x, then moved.
+    let (sine, cosine) = 20_f64.to_radians().sin_cos();
+    let expected = [-0.5 + 0.2, -0.5 * cosine, -0.5 * sine + 0.3];
+    for frame in [8, 9] {
+        for (have, want) in vertex(frame, 0).iter().zip(expected) {
+            assert!((f64::from(*have) - want).abs() < 1e-6, "{have} {want} at {frame}");
+        }
+    }
+    assert!(vertex(12, 0)[2] < vertex(9, 0)[2] - 0.01, "released at the end of frame 9, it falls");
+    assert_eq!(vertex(12, 35), vertex(1, 35), "the other pin stays");
+}
+
+#[test]
+fn a_bake_that_is_stopped_at_any_frame_and_resumed_is_equal_to_the_bit() {
+    let place = Place::new(SCENE);
+    whole(&place.request("whole"));
+    for frame in 1..12 {
+        let out = format!("stopped_{frame}");
+        stopped_at(&place.request(&out), frame);
+        assert_eq!(place.hashes(&out).len(), frame as usize);
+        whole(&Request { resume: true, threads: 2, ..place.request(&out) });
+        assert_eq!(place.hashes(&out), place.hashes("whole"), "stopped at {frame}");
+        for cache in ["sheet.pc2", "other.pc2"] {
+            let same =
+                place.bytes(&format!("{out}/{cache}")) == place.bytes(&format!("whole/{cache}"));
+            assert!(same, "{cache} stopped at {frame}");
+        }
+    }
+}
+
+#[test]
+fn caches_that_are_ahead_of_the_checkpoint_are_cut_back_to_it() {
+    let place = Place::new(SCENE);
+    whole(&place.request("whole"));
+    stopped_at(&place.request("out"), 4);
+    let old = place.bytes("out/boucle.checkpoint");
+    stopped_at(&Request { resume: true, ..place.request("out") }, 7);
+    std::fs::write(place.0.path().join("out/boucle.checkpoint"), old).expect("there is room");
+    whole(&Request { resume: true, ..place.request("out") });
+    assert_eq!(place.bytes("out/sheet.pc2"), place.bytes("whole/sheet.pc2"));
+    assert_eq!(place.hashes("out"), place.hashes("whole"));
+}
+
+#[test]
+fn kept_frames_are_those_of_the_whole_bake() {
+    let place = Place::new(SCENE);
+    whole(&place.request("whole"));
+    whole(&Request { frames: Some([5, 9]), ..place.request("part") });
+    assert_eq!(place.hashes("part"), place.hashes("whole")[4..9]);
+    let (header, _) = pc2::read(&place.0.path().join("part/sheet.pc2")).expect("a cache");
+    assert_eq!((header.first_frame, header.sample_count), (5, 5));
+    stopped_at(&Request { frames: Some([5, 9]), ..place.request("later") }, 3);
+    assert!(place.hashes("later").is_empty());
+    whole(&Request { frames: Some([5, 9]), resume: true, ..place.request("later") });
+    assert_eq!(place.bytes("later/sheet.pc2"), place.bytes("part/sheet.pc2"));
+    for frames in [[0, 5], [5, 13], [9, 5]] {
+        let request = Request { frames: Some(frames), ..place.request("never") };
+        let error = bake(&request, &mut |_| ControlFlow::Continue(())).expect_err("out of range");
+        assert!(error.to_string().contains("accepted: A:B within 1:12"), "{error}");
+        assert!(!place.0.path().join("never").exists());
+    }
+}
+
+#[test]
+fn a_checkpoint_of_another_scene_or_other_settings_is_refused() {
+    let place = Place::new(SCENE);
+    stopped_at(&place.request("out"), 3);
+    let changes =
+        ["cloth.sheet.density=0.3", "scene.frames=[1, 13]", "cloth.sheet.grid.size=[1, 2]"];
+    for change in changes {
+        let overrides = vec![change.to_owned()];
+        let request = Request { resume: true, overrides, ..place.request("out") };
+        let error = bake(&request, &mut |_| ControlFlow::Continue(())).expect_err(change);
+        assert_eq!(error.exit_code(), 2);
+        assert!(error.to_string().contains("another scene"), "{error}");
+    }
+    // The same scene in other words goes on.
+    std::fs::write(place.0.path().join("scene.toml"), format!("# a comment\n{SCENE}"))
+        .expect("room");
+    whole(&Request { resume: true, ..place.request("out") });
+}
+
+#[test]
+fn a_resumed_bake_that_is_whole_stays_as_it_is_and_one_without_a_checkpoint_starts() {
+    let place = Place::new(SCENE);
+    whole(&Request { resume: true, ..place.request("out") });
+    let (cache, hashes) = (place.bytes("out/sheet.pc2"), place.hashes("out"));
+    std::fs::remove_file(place.0.path().join("out/report.json")).expect("it is there");
+    whole(&Request { resume: true, ..place.request("out") });
+    assert_eq!((place.bytes("out/sheet.pc2"), place.hashes("out")), (cache, hashes));
+}
+
+#[test]
+fn a_bake_that_starts_anew_forgets_the_old_checkpoint() {
+    let place = Place::new(SCENE);
+    stopped_at(&place.request("out"), 6);
+    let blocked = place.0.path().join("out/sheet.pc2");
+    std::fs::remove_file(&blocked).expect("it is there");
+    std::fs::create_dir(&blocked).expect("a folder in the way");
+    let error =
+        bake(&place.request("out"), &mut |_| ControlFlow::Continue(())).expect_err("blocked");
+    assert_eq!(error.exit_code(), 4);
+    assert!(!place.0.path().join("out").join(checkpoint::FILE_NAME).exists());
+}
+
+#[test]
+fn a_divergence_keeps_the_frames_before_it() {
+    let place = Place::new(SCENE);
+    let unstable = [
+        "solver.integrator=forward_euler",
+        "solver.substeps=1",
+        "solver.allow_unstable=true",
+        "cloth.sheet.springs.limiter=none",
+        "scene.frames=[1, 2000]",
+        "cloth.sheet.springs.stretch=1e6",
+    ];
+    let overrides = unstable.map(str::to_owned).to_vec();
+    let request = Request { overrides, ..place.request("out") };
+    let error = bake(&request, &mut |_| ControlFlow::Continue(())).expect_err("unstable");
+    let Error::Diverged { frame, ref cloth, .. } = error else { panic!("{error}") };
+    assert_eq!(cloth, "sheet");
+    let kept = place.hashes("out").len();
+    assert_eq!(kept as i32, frame - 1);
+    let (header, _) = pc2::read(&place.0.path().join("out/sheet.pc2")).expect("a cache");
+    assert_eq!(header.sample_count as usize, kept);
+    let again = bake(&Request { resume: true, ..request }, &mut |_| ControlFlow::Continue(()));
+    assert_eq!(again.expect_err("it diverges again"), error);
+}
+
+#[test]
+fn names_that_cannot_name_a_file_are_refused() {
+    for name in ["a/b", "..", ".hidden", "a\\\\b", "ends ", "a:b", "tab\\t"] {
+        let place = Place::new(&SCENE.replace("name = \"sheet\"", &format!("name = \"{name}\"")));
+        let error =
+            bake(&place.request("out"), &mut |_| ControlFlow::Continue(())).expect_err(name);
+        assert!(error.to_string().contains("cloth.0.name = "), "{error}");
+        assert_eq!(error.exit_code(), 2);
+    }
+}

@@ -27,7 +27,12 @@ def bench() -> dict[str, Any]:
     bpy = embedded.start(OUT / "bench" / "blender")
     handler = Stopwatch(bpy)
     rows = [measure(bpy, handler, way) for way in ("mesh", "temporary PC2")]
-    headings = ["way", "handler, shown again (ms)", "whole frame change (ms)", "handler, simulated (ms)"]
+    headings = [
+        "way",
+        "handler, shown again (ms)",
+        "whole frame change (ms)",
+        "handler, simulated (ms)",
+    ]
     keys = ("way", "shown_ms", "frame_change_ms", "simulated_ms")
     print(f"{SIDE**2} vertices")
     print(table(headings, [[row[key] for key in keys] for row in rows]))
@@ -66,9 +71,7 @@ def measure(bpy: Any, handler: Stopwatch, way: str) -> dict[str, Any]:
         cloth.shape_key_add(name="Basis")  # a mesh with shape keys is not written to
     simulated = [go_to(bpy, handler, frame)[0] for frame in range(1, FRAMES + 1)][1:]
     check_it_moves(bpy, cloth)
-    shown = [
-        go_to(bpy, handler, frame) for _ in range(ROUNDS) for frame in (2, 5, 3, FRAMES, 4)
-    ]
+    shown = [go_to(bpy, handler, frame) for _ in range(ROUNDS) for frame in (2, 5, 3, FRAMES, 4)]
     return {
         "way": way,
         "shown_ms": median([ours for ours, _whole in shown]),

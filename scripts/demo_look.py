@@ -211,8 +211,10 @@ def prepare_render(width: int, height: int, samples: int) -> None:
     scene.cycles.samples = samples
     scene.cycles.use_adaptive_sampling = True
     scene.cycles.use_denoising = True
-    scene.cycles.max_bounces = 3
-    scene.cycles.diffuse_bounces = 2
+    scene.cycles.denoising_prefilter = "FAST"
+    scene.cycles.denoising_quality = "BALANCED"
+    scene.cycles.use_light_tree = False
+    scene.cycles.max_bounces = 2
     scene.render.resolution_x, scene.render.resolution_y = width, height
     scene.render.resolution_percentage = 100
     scene.render.use_persistent_data = True

@@ -15,8 +15,8 @@ import traceback
 from pathlib import Path
 from typing import Any
 
-FRAMES = 72
-GATHER = (6, 36)
+FRAMES = 60
+GATHER = (5, 32)
 """Frames between which the curtain is drawn together."""
 WIDTH = 1.7
 HEIGHT = 1.8
@@ -26,8 +26,8 @@ GATHERED = 0.62
 """Distance of the rings when drawn together, as a fraction of what it was."""
 PLEAT = 0.03
 """m; every other ring's point goes forward by this, the rest back."""
-STILL = {"frame": 60, "width": 720, "height": 900, "samples": 32}
-VIDEO = {"width": 360, "height": 450, "samples": 5}
+STILL = {"frame": 52, "width": 640, "height": 800, "samples": 20}
+VIDEO = {"width": 288, "height": 360, "samples": 4}
 
 
 def bake(folder: Path) -> None:

@@ -158,7 +158,7 @@ def ensure_venv(venv: Path, *requirements: str) -> None:
     wanted = "".join((SCRIPTS / name).read_text(encoding="utf-8") for name in requirements)
     stamp = venv / "requirements.stamp"
     python = venv_program(venv, "python")
-    if python.exists() and stamp.exists() and stamp.read_text(encoding="utf-8") == wanted:
+    if python.exists() and stamp.exists() and stamp.read_text(encoding="utf-8").startswith(wanted):
         return
     with heading(f"Install the requirements of {venv.name}"):
         if not answers(str(python), "--version").startswith("Python 3.11."):

@@ -38,6 +38,9 @@ TARGET_ATTRIBUTE = "boucle_target"
 REST_ATTRIBUTE = "boucle_rest"
 """Point attribute: the rest shape (m, object space), there only while `position` shows a frame."""
 
+REST_COUNT = "boucle_rest_count"
+"""Custom property of a mesh beside that attribute: how many vertices it had when the rest shape was kept."""
+
 TARGET_MODIFIER = "Boucle Target"
 CACHE_MODIFIER = "Boucle Cache"
 TARGET_GROUP = "Boucle Target"

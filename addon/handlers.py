@@ -20,9 +20,9 @@ def frame_change_post(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) ->
 
 @persistent
 def depsgraph_update_post(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """Give back the rest shape when the artist starts to edit."""
+    """Give back the rest shape when the artist starts to edit, or moves the mesh within its object."""
     if live.any_session() and not runtime.busy and not runtime.rendering:
-        live.leave_editing(depsgraph)
+        live.follow_edits(depsgraph)
 
 
 @persistent
@@ -75,7 +75,7 @@ def undo_post(scene: bpy.types.Scene, *_: Any) -> None:
 @persistent
 def render_init(scene: bpy.types.Scene, *_: Any) -> None:
     """From here on no data is added or removed."""
-    runtime.rendering.add("render")
+    runtime.rendering.add(scene.name)
     if registry.all_cloths():
         saving.warn_of_live(scene)
 
@@ -90,7 +90,7 @@ def render_pre(_scene: bpy.types.Scene, *_: Any) -> None:
 @persistent
 def render_end(_scene: bpy.types.Scene, *_: Any) -> None:
     """The render is done or was stopped."""
-    runtime.rendering.discard("render")
+    runtime.rendering.clear()
 
 
 _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (

@@ -109,8 +109,9 @@ class Bake:
 
     def _record(self, obj: bpy.types.Object, description: dict[str, Any]) -> dict[str, Any]:
         record = settings.record(obj, description)
-        first = self.options.frames[0] if self.options.frames else description["scene"]["frames"][0]
-        return {**record, "first": first, "end": self.end}
+        kept = self.options.frames
+        first = kept[0] if kept else description["scene"]["frames"][0]
+        return {**record, "first": first, "end": self.end, "is_part": kept is not None}
 
     def _make_store(
         self,
@@ -124,7 +125,7 @@ class Bake:
             first=record["first"],
             end=self.end,
             vertex_count=record["vertices"],
-            digest=drift.whole_digest(_without_end(record)),
+            digest=drift.whole_digest({**record, "end": None}),
         )
         mesh = obj.data
         cloth = {
@@ -201,15 +202,6 @@ class Bake:
         found = slot.find(obj)
         if found is not None:
             found.cache.show_viewport = bool(slot.played(found.cache))
-
-
-def _without_end(record: dict[str, Any]) -> dict[str, Any]:
-    """A bake may be resumed beyond its end: the end is no part of what binds a checkpoint."""
-    settings_without = {
-        key: value for key, value in record["settings"].items() if key != "scene.frames"
-    }
-    start = record["settings"]["scene.frames"][0]
-    return {**record, "settings": {**settings_without, "start": start}, "end": None}
 
 
 def outcome(done: Bake, error: BaseException | None) -> str:

@@ -175,7 +175,7 @@ def status(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
     first = int(record.get("first", header.first_frame))
     last = first + header.sample_count - 1
     text = f"Baked: frames {first} to {last}, {size(os.path.getsize(path))}"
-    end = int(record.get("end", last))
+    end = int(record.get("end", last)) if record.get("is_part") else obj.boucle.frame_end
     if last < end:
         text = f"Partly baked: frames {first} to {last} of {end}; Resume goes on"
     changed = drift_of(obj, scene, in_full=False)

@@ -32,6 +32,9 @@ class Display(Protocol):
     def show(self, obj: bpy.types.Object, frames: LiveFrames, frame: int) -> None:
         """Show the kept frame."""
 
+    def is_shown(self, obj: bpy.types.Object, frames: LiveFrames) -> bool:
+        """Whether the object looks as `show` left it."""
+
     def hide(self, obj: bpy.types.Object) -> None:
         """Take the frame away, so that the file can be saved; `show` brings it back."""
 
@@ -45,6 +48,10 @@ class Display(Protocol):
 class Direct:
     """Frames in the mesh's `position`."""
 
+    def __init__(self) -> None:
+        """Nothing is shown yet."""
+        self._frame = 0
+
     def show(self, obj: bpy.types.Object, frames: LiveFrames, frame: int) -> None:
         """Write the frame; the rest shape is kept before the first one."""
         if not rest.is_displaced(obj.data):
@@ -52,6 +59,12 @@ class Direct:
                 return
             rest.keep(obj.data)
         mesh_arrays.write_positions(obj.data, frames.nearest(frame))
+        self._frame = frame
+
+    def is_shown(self, obj: bpy.types.Object, frames: LiveFrames) -> bool:
+        """Whether nobody else has moved the vertices since."""
+        present = memoryview(mesh_arrays.read_positions(obj.data)).cast("B")
+        return present == memoryview(frames.nearest(self._frame)).cast("B")
 
     def hide(self, obj: bpy.types.Object) -> None:
         """Put the rest shape back."""
@@ -89,6 +102,10 @@ class TemporaryFile:
             is_new = True
         if is_new:
             obj.update_tag()
+
+    def is_shown(self, _obj: bpy.types.Object, _frames: LiveFrames) -> bool:
+        """The mesh is the artist's own and may be moved at will."""
+        return True
 
     def _append(self, obj: bpy.types.Object, frames: LiveFrames) -> bool:
         kept = frames.all()

@@ -19,7 +19,7 @@ from ..core import points
 from ..core.live_frames import Action, LiveFrames
 from ..core.points import Points
 from ..core.progress import size
-from ..core.refusal import sentence_of
+from ..core.refusal import Refusal, sentence_of
 from . import cache, display, registry, rest, runtime, sampling, settings, simulation
 from . import slot as slots
 
@@ -39,6 +39,8 @@ class Session:
     display: display.Display
     basis: tuple[object, ...]
     """What must not change while the session lives."""
+    place: points.Affine
+    """The object in its parent's space, when the last frame was shown."""
     waits: str = ""
     """Why the cloth does not move on at the present frame; empty if it does."""
 
@@ -72,6 +74,8 @@ def _is_live(obj: bpy.types.Object) -> bool:
 def _come_to_frame(
     obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
 ) -> None:
+    if not sampling.is_evaluated(obj, depsgraph):
+        return
     session = _valid_session(obj, scene)
     frame = scene.frame_current
     if session is None:
@@ -86,6 +90,7 @@ def _come_to_frame(
         _step(session, obj, depsgraph)
     if action is not Action.IGNORE:
         session.display.show(obj, session.frames, frame)
+        session.place = points.affine(obj.matrix_local)
 
 
 def begin(
@@ -122,6 +127,7 @@ def _build(
         is_pinned=simulation.is_pinned(description),
         display=shown,
         basis=_basis(obj, scene),
+        place=points.affine(obj.matrix_local),
     )
 
 
@@ -163,6 +169,10 @@ def _step(
         return
     try:
         pose = sampling.pose(obj, depsgraph, session.is_pinned)
+    except Refusal as refusal:
+        session.waits = str(refusal)
+        return
+    try:
         if pose.targets is not None:
             session.solver.set_pin_targets(0, pose.targets)
         session.solver.advance()
@@ -241,14 +251,33 @@ def revalidate(scene: bpy.types.Scene) -> None:
             session.display.show(obj, session.frames, scene.frame_current)
 
 
-def leave_editing(depsgraph: bpy.types.Depsgraph) -> None:
+def follow_edits(depsgraph: bpy.types.Depsgraph) -> None:
     """Give back the rest shape of cloths that the artist began to edit; called after each depsgraph update."""
     if not depsgraph.id_type_updated("OBJECT") and not depsgraph.id_type_updated("MESH"):
         return
     for uid in list(_sessions):
         obj = registry.by_uid(uid)
-        if obj is not None and obj.mode in EDITING_MODES:
+        if obj is None:
+            continue
+        if obj.mode in EDITING_MODES:
             drop(obj)
+        else:
+            _follow_applied_transform(obj, _sessions[uid])
+
+
+def _follow_applied_transform(obj: bpy.types.Object, session: Session) -> None:
+    """Apply Scale, Set Origin and their like move the mesh within its object: the kept rest shape must come along."""
+    place = points.affine(obj.matrix_local)
+    if place == session.place:
+        return
+    before, session.place = session.place, place
+    back = points.inverse(place)
+    if back is None or not rest.is_displaced(obj.data):
+        return
+    if session.display.is_shown(obj, session.frames):
+        return
+    rest.transform(obj.data, points.product(back, before))
+    drop(obj)
 
 
 def hide_all() -> None:

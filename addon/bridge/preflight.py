@@ -109,16 +109,15 @@ def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem
     if not group:
         yield _warning(f'"{obj.name}": no Pin Group is set, so the cloth falls freely')
     elif obj.vertex_groups.get(group) is not None:
-        held = set(mesh_arrays.group_vertices(obj, group, settings.PIN_THRESHOLD))
-        soft = [v for v in mesh_arrays.group_vertices(obj, group, 1e-6) if v not in held]
-        partly = [v for v in held if v not in set(mesh_arrays.group_vertices(obj, group, 1.0))]
-        if soft or partly:
+        whole = set(mesh_arrays.group_vertices(obj, group, 1.0))
+        soft = [v for v in mesh_arrays.group_vertices(obj, group, 1e-6) if v not in whole]
+        if soft:
             yield Problem(
                 Severity.WARNING,
-                f'"{obj.name}": {len(soft) + len(partly)} vertices of "{group}" have a weight '
+                f'"{obj.name}": {len(soft)} vertices of "{group}" have a weight '
                 f"below 1: soft pins are not supported yet, from {settings.PIN_THRESHOLD} on a "
                 "vertex is held and below it is free",
-                [*soft, *partly],
+                soft,
             )
     animated = [name for name in SAMPLED_ONCE if _is_animated(obj, name)]
     if animated:
@@ -126,6 +125,7 @@ def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem
             f'"{obj.name}": {", ".join(animated)} is animated: only its value at the start frame '
             "counts yet"
         )
+    yield from _unsupported(obj, scene)
     if cache.problem(obj):
         yield _warning(cache.problem(obj))
     changed = cache.drift_of(obj, scene, in_full=True)
@@ -133,6 +133,19 @@ def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem
         yield _warning(
             f'"{obj.name}": the bake is outdated, changed since: {", ".join(changed)}: bake again'
         )
+
+
+def _unsupported(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
+    """What a scene may hold and this version leaves out: said, never silently ignored."""
+    if any(modifier.type == "CLOTH" for modifier in obj.modifiers):
+        yield _warning(f'"{obj.name}" has a Cloth modifier, too: remove one of the two')
+    colliders = [o.name for o in scene.objects if any(m.type == "COLLISION" for m in o.modifiers)]
+    fields = [o.name for o in scene.objects if o.field is not None and o.field.type != "NONE"]
+    for names, what in ((colliders, "collisions"), (fields, "force fields")):
+        if names:
+            yield _warning(
+                f'"{obj.name}": {what} are not supported yet, so "{names[0]}" has no effect on it'
+            )
 
 
 def _is_animated(obj: bpy.types.Object, name: str) -> bool:

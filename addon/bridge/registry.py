@@ -1,13 +1,13 @@
 """Which objects are Boucle cloths, found without a walk over all objects at every frame.
 
-Nothing here holds on to Blender data: a cloth is remembered by name and `session_uid`, and looked up again each time.
+Nothing here holds on to Blender data: a cloth is remembered by name, library and `session_uid`, and looked up again each time.
 """
 
 from __future__ import annotations
 
 import bpy
 
-_known: list[tuple[str, int]] = []
+_known: list[tuple[tuple[str, str | None], int]] = []
 _object_count = -1
 
 
@@ -30,7 +30,7 @@ def forget() -> None:
 def all_cloths() -> list[bpy.types.Object]:
     """Every Boucle cloth of the file."""
     if _object_count == len(bpy.data.objects):
-        found = [bpy.data.objects.get(name) for name, _ in _known]
+        found = [bpy.data.objects.get(key) for key, _ in _known]
         if all(
             obj is not None and obj.session_uid == uid and is_cloth(obj)
             for obj, (_, uid) in zip(found, _known, strict=True)
@@ -46,12 +46,22 @@ def local_cloths() -> list[bpy.types.Object]:
 
 def cloths_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     """The local cloths of one scene."""
-    return [obj for obj in local_cloths() if scene.objects.get(obj.name) == obj]
+    return [obj for obj in local_cloths() if _is_in(obj, scene)]
+
+
+def _is_in(obj: bpy.types.Object, scene: bpy.types.Scene) -> bool:
+    found = scene.objects.get(obj.name)
+    if found is None or found == obj:
+        return found is not None
+    return any(other == obj for other in scene.objects)  # a linked object may bear the same name
 
 
 def _look() -> list[bpy.types.Object]:
     global _object_count
     found = [obj for obj in bpy.data.objects if is_cloth(obj)]
-    _known[:] = [(obj.name, obj.session_uid) for obj in found]
+    _known[:] = [
+        ((obj.name, obj.library.filepath if obj.library else None), obj.session_uid)
+        for obj in found
+    ]
     _object_count = len(bpy.data.objects)
     return found

@@ -2,6 +2,9 @@
 
 While a live frame stands in a mesh's `position`, the rest shape stands in the attribute `boucle_rest`. The attribute's
 presence is the sign: where it is, `position` is a frame and not the artist's mesh.
+
+Blender carries the attribute along when it changes the mesh. Vertices that were joined to the mesh meanwhile have zeros in
+it: the vertex count at the time the rest shape was kept, a custom property, tells that, and they stay where they are.
 """
 
 from __future__ import annotations
@@ -9,8 +12,9 @@ from __future__ import annotations
 import bmesh
 import bpy
 
-from .._identifiers import REST_ATTRIBUTE
-from ..core.points import Points
+from .._identifiers import REST_ATTRIBUTE, REST_COUNT
+from ..core import points
+from ..core.points import Affine, Points
 from . import mesh_arrays
 
 
@@ -31,6 +35,13 @@ def positions(mesh: bpy.types.Mesh) -> Points:
     return mesh_arrays.read_positions(mesh)
 
 
+def transform(mesh: bpy.types.Mesh, matrix: Affine) -> None:
+    """Move the kept rest shape by a matrix."""
+    attribute = mesh.attributes[REST_ATTRIBUTE]
+    moved = points.transform(mesh_arrays.read_vectors(attribute), matrix, "f")
+    attribute.data.foreach_set("vector", moved)
+
+
 def keep(mesh: bpy.types.Mesh) -> None:
     """Store the rest shape, before the first frame is written into the mesh."""
     if is_displaced(mesh):
@@ -38,6 +49,7 @@ def keep(mesh: bpy.types.Mesh) -> None:
     rest = mesh_arrays.read_positions(mesh)
     attribute = mesh.attributes.new(REST_ATTRIBUTE, "FLOAT_VECTOR", "POINT")
     attribute.data.foreach_set("vector", rest)
+    mesh[REST_COUNT] = len(mesh.vertices)
 
 
 def put_back(mesh: bpy.types.Mesh) -> None:
@@ -48,8 +60,24 @@ def put_back(mesh: bpy.types.Mesh) -> None:
         _put_back_in_edit_mode(mesh)
         return
     if is_displaced(mesh):
-        mesh_arrays.write_positions(mesh, positions(mesh))
+        kept = positions(mesh)
+        if mesh.get(REST_COUNT) != len(mesh.vertices):
+            _fill_in(kept, mesh_arrays.read_positions(mesh))
+        mesh_arrays.write_positions(mesh, kept)
     mesh.attributes.remove(mesh.attributes[REST_ATTRIBUTE])
+    _forget_count(mesh)
+
+
+def _fill_in(kept: Points, shown: Points) -> None:
+    """Take the shown place of vertices that have no rest shape."""
+    for k in range(0, len(kept), 3):
+        if not any(kept[k : k + 3]):
+            kept[k : k + 3] = shown[k : k + 3]
+
+
+def _forget_count(mesh: bpy.types.Mesh) -> None:
+    if REST_COUNT in mesh:
+        del mesh[REST_COUNT]
 
 
 def _put_back_in_edit_mode(mesh: bpy.types.Mesh) -> None:
@@ -60,4 +88,5 @@ def _put_back_in_edit_mode(mesh: bpy.types.Mesh) -> None:
     for vertex in edited.verts:
         vertex.co = vertex[layer]
     edited.verts.layers.float_vector.remove(layer)
+    _forget_count(mesh)
     bmesh.update_edit_mesh(mesh)

@@ -14,7 +14,7 @@ busy: set[str] = set()
 """What keeps live mode from acting: "bake" while one runs."""
 
 rendering: set[str] = set()
-""""render" from the start of a render to its end."""
+"""Names of the scenes that are being rendered."""
 
 
 def session_folder() -> str:
@@ -31,4 +31,5 @@ def may_write_in_render() -> bool:
     """Whether a handler may change data now: a window draws while it renders, unless it is locked."""
     if not rendering or bpy.app.background:
         return True
-    return all(scene.render.use_lock_interface for scene in bpy.data.scenes)
+    scenes = [bpy.data.scenes.get(name) for name in rendering]
+    return all(scene is not None and scene.render.use_lock_interface for scene in scenes)

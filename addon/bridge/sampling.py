@@ -12,6 +12,11 @@ from ..core.refusal import Refusal
 from . import mesh_arrays, rest, slot
 
 
+def is_evaluated(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bool:
+    """Whether the depsgraph knows the object: it may be excluded from the view layer."""
+    return obj.evaluated_get(depsgraph) != obj
+
+
 def object_matrix(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Affine:
     """Object to world space, as evaluated."""
     return mesh_arrays.world_matrix(obj.evaluated_get(depsgraph))
@@ -48,6 +53,12 @@ def targets(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Points:
         raise Refusal(
             f'"{obj.name}": Blender does not evaluate its modifiers: show the object and its '
             "collection in the viewport, and the modifier that stores Boucle's target"
+        )
+    hiding = slot.hiding(obj, len(attribute.data), depsgraph.mode == "RENDER")
+    if hiding is not None:
+        raise Refusal(
+            f'"{obj.name}": the modifier "{hiding.name}" below Boucle\'s hides where the pins go: '
+            "switch it off in the viewport to play, or bake"
         )
     if len(attribute.data) < count:
         raise Refusal(_other_count(obj, len(attribute.data)))

@@ -21,6 +21,10 @@ COUNT_CHANGING = frozenset({
 """Modifier types that may give a mesh other vertices: the slot stands above the first of them."""
 
 
+KEEPING_FIRST = frozenset({"ARRAY", "EDGE_SPLIT", "MULTIRES", "SOLIDIFY", "SUBSURF", "TRIANGULATE"})
+"""Of those, the types that leave the first vertices and their attributes exactly as they are (tried in 4.2 and 4.5)."""
+
+
 class Slot(NamedTuple):
     """The two modifiers."""
 
@@ -122,6 +126,19 @@ def below(obj: bpy.types.Object) -> list[bpy.types.Modifier]:
         return []
     names = [modifier.name for modifier in obj.modifiers]
     return list(obj.modifiers)[names.index(found.cache.name) + 1 :]
+
+
+def hiding(
+    obj: bpy.types.Object, evaluated_count: int, in_render: bool
+) -> bpy.types.Modifier | None:
+    """The modifier below the slot after which the cloth's own vertices cannot be told, if there is one."""
+    for modifier in below(obj):
+        is_on = modifier.show_render if in_render else modifier.show_viewport
+        if not is_on or modifier.type not in COUNT_CHANGING - KEEPING_FIRST:
+            continue
+        if modifier.type != "NODES" or evaluated_count != len(obj.data.vertices):
+            return modifier
+    return None
 
 
 def _place(obj: bpy.types.Object) -> int:

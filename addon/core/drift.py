@@ -10,7 +10,7 @@ from typing import Any
 from .points import Points
 
 _WORDS = {
-    "frames": "frame range",
+    "start": "start frame",
     "stretch": "stretch stiffness",
     "shear": "shear stiffness",
     "bend": "bend stiffness",
@@ -34,6 +34,9 @@ def record(scene: Mapping[str, Any], vertices: int, topology: str) -> dict[str, 
     settings: dict[str, Any] = {}
     _flatten(scene, "", settings)
     settings.pop("cloth.name", None)
+    frames = settings.pop("scene.frames", None)
+    if frames:  # a bake may go on beyond its end: the end is no part of what it was made from
+        settings["scene.start"] = frames[0]
     return {"settings": settings, "vertices": vertices, "topology": topology}
 
 

@@ -63,6 +63,16 @@ def inverse(matrix: Affine) -> Affine | None:
     return tuple(out)
 
 
+def product(one: Affine, other: Affine) -> Affine:
+    """The matrix that moves first by other, then by one."""
+    out: list[float] = []
+    for row in range(3):
+        p, q, r, move = one[4 * row : 4 * row + 4]
+        out += [p * other[k] + q * other[4 + k] + r * other[8 + k] for k in range(4)]
+        out[-1] += move
+    return tuple(out)
+
+
 def transform(points: Points, matrix: Affine, kind: str) -> Points:
     """The points moved by the matrix, as a new buffer of the kind ("f" or "d")."""
     numpy = _numpy()

@@ -236,6 +236,7 @@ def follow_armature():
     modifier = obj.modifiers.new("Armature", "ARMATURE")
     modifier.object = rig
     obj.modifiers.move(2, 0)
+    obj.modifiers.new("Subdivision", "SUBSURF").subdivision_type = "SIMPLE"
     bpy.context.scene.frame_set(1)
     pins = pinned_vertices(obj)
     start = world_positions(obj)
@@ -246,7 +247,15 @@ def follow_armature():
     bpy.ops.boucle.bake()
     bpy.context.scene.frame_set(11)
     baked = world_positions(obj)
+    obj.modifiers.new("Mask", "MASK").vertex_group = "Pin"
+    bpy.ops.boucle.free_bake()
+    play(1, 3)
+    hidden = obj.boucle.status
+    obj.modifiers["Mask"].show_viewport = False
+    play(1, 3)
     return {
+        "hidden": hidden,
+        "switched": obj.boucle.status,
         "pins": max(moved),
         "free": list(free),
         "baked": max((a - b).length for a, b in zip(baked, end, strict=True)),
@@ -258,6 +267,8 @@ def test_pins_follow_an_armature_and_the_bake_is_the_live_result(blender):
     assert result["pins"] < 1e-5
     assert result["free"][2] < -1e-4
     assert result["baked"] < 1e-5
+    assert 'the modifier "Mask" below Boucle\'s hides where the pins go' in result["hidden"]
+    assert result["switched"].startswith("Live: frames 1 to 3")
 
 
 def follow_shape_keys():
@@ -494,3 +505,191 @@ def test_a_parented_and_scaled_cloth_moves_as_the_same_cloth_in_world_space(blen
     assert result["expected"] < 1e-4
     assert result["baked"] < 1e-5
     assert result["first"] < 1e-5
+
+
+def change_the_mesh_while_live():
+    import bpy
+    from cloths import add_cloth, farthest, mesh_positions, play
+
+    def live_cloth():
+        for other in list(bpy.data.objects):
+            bpy.data.objects.remove(other)
+        bpy.context.scene.frame_set(1)
+        obj = add_cloth()
+        rest = mesh_positions(obj)
+        obj.scale = (2.0, 1.0, 3.0)
+        obj.location = (1.0, 2.0, 3.0)
+        bpy.context.view_layer.update()
+        play(1, 8)
+        assert mesh_positions(obj) != rest
+        return obj, rest
+
+    def scaled(values, factors, offset=(0.0, 0.0, 0.0)):
+        return [v * factors[k % 3] + offset[k % 3] for k, v in enumerate(values)]
+
+    out = {}
+    obj, rest = live_cloth()
+    bpy.ops.object.transform_apply(location=False, rotation=False, scale=True)
+    bpy.context.view_layer.update()
+    bpy.ops.boucle.reset()
+    out["apply scale"] = farthest(mesh_positions(obj), scaled(rest, (2, 1, 3)))
+    obj, rest = live_cloth()
+    bpy.ops.object.transform_apply()
+    bpy.context.view_layer.update()
+    play(1, 2)
+    bpy.ops.boucle.reset()
+    out["apply all"] = farthest(mesh_positions(obj), scaled(rest, (2, 1, 3), (1, 2, 3)))
+    obj, rest = live_cloth()
+    bpy.context.scene.cursor.location = (5.0, 0.0, 0.0)
+    bpy.ops.object.origin_set(type="ORIGIN_CURSOR")
+    bpy.context.view_layer.update()
+    bpy.ops.boucle.reset()
+    world = [obj.matrix_world @ vertex.co for vertex in obj.data.vertices]
+    flat = [value for place in world for value in place]
+    out["set origin"] = farthest(flat, scaled(rest, (2, 1, 3), (1, 2, 3)))
+    obj, rest = live_cloth()
+    obj.location.x += 7.0
+    bpy.context.view_layer.update()
+    play(9, 10)
+    status = obj.boucle.status
+    bpy.ops.boucle.reset()
+    out["move"] = farthest(mesh_positions(obj), rest)
+    obj, rest = live_cloth()
+    obj.scale, obj.location = (1.0, 1.0, 1.0), (0.0, 0.0, 0.0)
+    bpy.context.view_layer.update()
+    bpy.ops.mesh.primitive_plane_add(location=(0.0, 0.0, 9.0))
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    bpy.ops.object.join()
+    bpy.context.view_layer.update()
+    play(8, 9)
+    joined = mesh_positions(obj)
+    out["join"] = farthest(joined[: len(rest)], rest)
+    plane = sorted(round(z, 5) for z in joined[len(rest) + 2 :: 3])
+    left = [*obj.data.keys(), *obj.data.attributes.keys()]
+    return out, status, plane, left
+
+
+def test_the_rest_shape_survives_applied_transforms_and_joined_meshes(blender):
+    found, status, plane, left = blender.run(change_the_mesh_while_live)
+    assert status.startswith("Live: frames 1 to 10"), "moving the object is no reset"
+    for name, difference in found.items():
+        assert difference < 1e-5, name
+    assert plane == [9.0] * 4
+    assert not [name for name in left if name.startswith("boucle_rest")]
+
+
+def switch_off_while_live():
+    import addon_utils
+    from cloths import add_cloth, mesh_positions, play
+
+    obj, keyed = add_cloth(), add_cloth()
+    keyed.shape_key_add()
+    rest = mesh_positions(obj)
+    play(1, 5)
+    moved = mesh_positions(obj) != rest
+    addon_utils.disable("bl_ext.user_default.boucle")
+    modifier = keyed.modifiers["Boucle Cache"]
+    off = [mesh_positions(obj) == rest, modifier.filepath, modifier.show_viewport]
+    addon_utils.enable("bl_ext.user_default.boucle")
+    play(1, 3)
+    return [moved, off, obj.boucle.status]
+
+
+def test_switching_the_add_on_off_gives_the_rest_shape_back(blender):
+    moved, off, status = blender.run(switch_off_while_live)
+    assert moved
+    assert off == [True, "", False]
+    assert status.startswith("Live: frames 1 to 3")
+
+
+def hide_while_live():
+    from cloths import add_cloth, play
+
+    obj = add_cloth()
+    obj.shape_key_add()
+    play(1, 4)
+    obj.hide_viewport = True
+    play(5, 6)
+    obj.hide_viewport = False
+    hidden = obj.boucle.status
+    play(4, 7)
+    return [hidden, obj.boucle.status]
+
+
+def test_a_hidden_cloth_waits_and_goes_on_when_it_is_shown(blender):
+    hidden, shown = blender.run(hide_while_live)
+    assert hidden.startswith("Live: frames 1 to 4")
+    assert shown.startswith("Live: frames 1 to 7")
+
+
+def check_the_scene():
+    import bpy
+    from cloths import add_cloth
+
+    obj = add_cloth()
+    clean = bpy.ops.boucle.check(), obj.boucle.status
+    bpy.ops.mesh.primitive_cube_add()
+    ball = bpy.context.object
+    ball.modifiers.new("Collision", "COLLISION")
+    bpy.ops.object.effector_add(type="WIND")
+    bpy.context.view_layer.objects.active = obj
+    obj.vertex_groups["Pin"].add([0, 1], 0.3, "REPLACE")
+    obj.boucle.keyframe_insert("stretch", frame=1)
+    obj.modifiers.new("Cloth", "CLOTH")
+    bpy.ops.boucle.check()
+    selected = [v.index for v in obj.data.vertices if v.select]
+    done = list(bpy.ops.boucle.bake())
+    return [list(clean[0]), clean[1], selected, done]
+
+
+def test_what_is_left_out_is_said_by_the_check(blender):
+    done, status, selected, baked = blender.run(check_the_scene)
+    assert done == ["FINISHED"] and status.startswith("Not baked")
+    assert selected == [0, 1]
+    assert baked == ["FINISHED"]
+    for words in (
+        "collisions are not supported yet",
+        "force fields are not supported yet",
+        "has a Cloth modifier, too",
+        "soft pins are not supported yet",
+        "stretch is animated",
+    ):
+        assert words in blender.output, words
+
+
+def work_without_numpy():
+    import sys
+
+    import bpy
+    from cloths import add_cloth, addon, farthest, mesh_positions, play, shown_positions
+
+    def results():
+        obj = add_cloth(end=8)
+        obj.location, obj.scale = (0.5, 1.0, -2.0), (1.0, 2.0, 0.5)
+        keyed = add_cloth(end=8)
+        keyed.shape_key_add()
+        play(1, 8)
+        live = [mesh_positions(obj), shown_positions(keyed)]
+        bpy.context.view_layer.objects.active = obj
+        bpy.ops.boucle.bake()
+        bpy.ops.boucle.check()
+        bpy.context.scene.frame_set(8)
+        shown = shown_positions(obj)
+        for other in (obj, keyed):
+            bpy.data.objects.remove(other)
+        bpy.context.scene.frame_set(1)
+        return [*live, shown]
+
+    points = addon("core.points")
+    with_numpy = results()
+    assert points._numpy() is not None
+    sys.modules["numpy"] = None
+    points._numpy.cache_clear()
+    without = results()
+    assert points._numpy() is None
+    return [farthest(a, b) for a, b in zip(with_numpy, without, strict=True)]
+
+
+def test_everything_works_without_numpy(blender):
+    assert max(blender.run(work_without_numpy)) < 1e-6

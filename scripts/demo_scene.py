@@ -37,6 +37,7 @@ def bake(folder: Path) -> None:
     bpy = embedded.start(folder / ".blender")
     import demo_look
 
+    bpy.context.preferences.filepaths.save_version = 0  # no curtain.blend1
     scene = bpy.context.scene
     scene.frame_start, scene.frame_end, scene.render.fps = 1, FRAMES, 24
     top = demo_look.TOP - 2.0 * demo_look.RING + 0.012
@@ -70,6 +71,7 @@ def bake(folder: Path) -> None:
     print(f"   {FRAMES} frames baked: {time.monotonic() - started:.1f} s")
     put_beside(cloth, bpy, folder)
     bpy.ops.wm.save_mainfile()
+    shutil.rmtree(folder / ".blender")
 
 
 def hang(cloth: Any) -> list[int]:
@@ -159,7 +161,7 @@ if __name__ == "__main__":
     stage = {"bake": bake, "still": still, "video": video}[sys.argv[1]]
     try:
         stage(Path(sys.argv[2]).resolve())
-    except BaseException:
+    except BaseException:  # noqa: BLE001 (told in full; the exit code says it too)
         traceback.print_exc()
         sys.stdout.flush()
         sys.stderr.flush()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import shutil
 from pathlib import Path
@@ -28,10 +29,9 @@ def start(folder: Path) -> Any:
     shutil.copytree(ROOT / "addon", extensions / "boucle", ignore=ignored)
     os.environ["BLENDER_USER_RESOURCES"] = str(folder)
 
-    import bpy  # first: it makes Blender's own modules importable
+    import bpy
 
-    import addon_utils
-
+    addon_utils = importlib.import_module("addon_utils")  # bpy made it importable
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     if addon_utils.enable(MODULE, default_set=True, persistent=True) is None:
         raise RuntimeError("the add-on could not be enabled in the embedded Blender")

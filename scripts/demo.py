@@ -13,7 +13,7 @@ from pathlib import Path
 
 from environment import OUT, ROOT, SCRIPTS, Failed, stop
 
-STAGES = {"bake": 240.0, "still": 400.0, "video": 700.0}
+STAGES = {"bake": 240.0, "still": 400.0, "video": 900.0}
 """Each stage and the seconds that it may take; a busy machine takes several times what a free one does."""
 RESULTS = ("curtain.blend", "curtain.pc2", "report.json", "curtain.png", "curtain.mp4")
 NOISE = ("Fra:", "Saved:", "Append frame", "Time:", "Read blend:", "Info:", "[mp4", "[libx264")

@@ -26,7 +26,7 @@ GATHERED = 0.62
 """Distance of the rings when drawn together, as a fraction of what it was."""
 PLEAT = 0.03
 """m; every other ring's point goes forward by this, the rest back."""
-STILL = {"frame": 52, "width": 640, "height": 800, "samples": 20}
+STILL = {"frame": 52, "width": 560, "height": 700, "samples": 14}
 VIDEO = {"width": 288, "height": 360, "samples": 4}
 
 

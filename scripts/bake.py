@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import io
 import re
 import signal
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NoReturn, Protocol
 
@@ -167,20 +168,14 @@ def complain(message: object) -> None:
         print(f"bake.py: {line}", file=sys.stderr, flush=True)
 
 
-@contextlib.contextmanager
-def stop_signals() -> Iterator[None]:
+def take_signals() -> None:
     """Take a request to end (SIGTERM) as Ctrl-C."""
 
     def stop(_number: int, _frame: object) -> NoReturn:
         raise KeyboardInterrupt
 
-    numbers = (signal.SIGTERM, signal.SIGINT)  # Ctrl-C also where a parent process had it ignored
-    before = [signal.signal(number, stop) for number in numbers]
-    try:
-        yield
-    finally:
-        for number, handler in zip(numbers, before, strict=True):
-            signal.signal(number, handler)
+    signal.signal(signal.SIGTERM, stop)
+    signal.signal(signal.SIGINT, stop)  # also where a parent process had Ctrl-C ignored
 
 
 def run(words: Sequence[str]) -> int:
@@ -215,10 +210,15 @@ def run(words: Sequence[str]) -> int:
 
 def main(words: Sequence[str]) -> int:
     """Bake what the command line asks for and return the exit code, whatever happens."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a file name may be no text
     try:
-        with stop_signals():
-            return run(words)
+        take_signals()
+        return run(words)
     except KeyboardInterrupt:
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # once is enough
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
         complain("stopped; the frames so far are kept, --resume goes on")
         return STOPPED
     except Exception as error:  # noqa: BLE001 - a fault of our own ends in one line, too

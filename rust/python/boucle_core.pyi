@@ -1,7 +1,8 @@
 """Boucle's physics: cloth as springs, moved frame by frame. SI units, Z up, world space.
 
 Every array argument is any C-contiguous object with the buffer protocol (array.array, numpy array, memoryview); numpy is
-not needed. Work runs with the interpreter released. The same input gives the same bits for any number of threads.
+not needed. Where (n, 3) stands, a flat array of 3 n numbers is taken too; where int32 stands, any integers of 4 or 8 bytes.
+A simulation is used by one thread at a time. Work runs with the interpreter released. The same input gives the same bits for any number of threads.
 """
 
 from collections.abc import Buffer, Callable, Mapping, Sequence
@@ -37,7 +38,7 @@ class Simulation:
         meshes: Sequence[tuple[Buffer, Buffer, Buffer]],
         threads: int = 0,
     ) -> Simulation:
-        """Build a simulation at the scene's first frame, at rest.
+        """Build a simulation at the scene's first frame, at rest. The scene's `transform`, pin `motion` and `release` hold.
 
         Args:
             scene: The scene file's keys as a JSON object, but `grid` and `mesh` of each cloth stand in `meshes`.
@@ -68,7 +69,8 @@ class Simulation:
 
     def set_pin_targets(self, cloth: int, targets: Buffer) -> None:
         """Where pins go: positions (m), float32 or float64 (n, 3), for *all* vertices of the cloth, of which only the
-        pinned are read; reached in a straight line at the end of the next frame."""
+        pinned are read; reached in a straight line at the end of the next frame. Where the scene moves the pins of this
+        cloth itself (`motion`), the scene's targets hold."""
 
     def release_pins(self, cloth: int, vertices: Sequence[int] | None = None) -> None:
         """Let pinned vertices (all if None) go, keeping their velocity."""

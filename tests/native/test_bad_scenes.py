@@ -173,7 +173,7 @@ MESHES = [
     ("not UTF-8", b"v 0 0 0\n# caf\xe9\n", "line 2 is not UTF-8"),
     ("binary", bytes(range(256)) * 40, "line 1"),
     ("endless line", b"v" * 3_000_000, "line 1 is too long"),
-    ("face out of range", QUADS + "f 1 2 7\n", 'line 9: corner "7" with 6 vertices before it'),
+    ("face out of range", QUADS + "f 1 2 7\n", 'line 9: the face names vertex 7; accepted: 1 to 6'),
     ("face zero", QUADS + "f 0 1 2\n", 'line 9: corner "0"'),
     ("face far back", QUADS + "f -7 -1 -2\n", 'line 9: corner "-7"'),
     ("face words", QUADS + "f a b c\n", 'line 9: corner "a"'),

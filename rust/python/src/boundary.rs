@@ -87,12 +87,13 @@ pub(crate) fn add_exceptions(module: &Bound<'_, PyModule>) -> PyResult<()> {
         diverged: add(
             "DivergedError",
             py.get_type::<PyArithmeticError>(),
-            "A position left the finite numbers, at `frame` and `vertex`. Earlier frames are kept.",
+            "A position left the finite numbers: \"diverged at frame F, vertex V of cloth NAME\". \
+             Earlier frames are kept.",
         )?,
         cache: add(
             "CacheError",
             py.get_type::<PyOSError>(),
-            "A result cannot be written or read. Earlier frames are kept.",
+            "A result cannot be written or read (disk full, no permission). Earlier frames are kept.",
         )?,
         internal: add(
             "InternalError",

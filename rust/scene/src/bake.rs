@@ -184,14 +184,15 @@ impl Bake {
     }
 
     fn write_checkpoint(&mut self) -> Result<()> {
-        self.checkpoint_written = Instant::now();
         self.folder.write_checkpoint(&Checkpoint {
             digest: self.digest,
             frame: self.assembly.simulation.frame(),
             seconds: self.report.total_seconds(),
             rows: self.report.rows().to_vec(),
             simulation: self.assembly.simulation.checkpoint(),
-        })
+        })?;
+        self.checkpoint_written = Instant::now();
+        Ok(())
     }
 }
 

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 
 use crate::error::{Error, Result};
 
-/// Vertices of all cloths of a scene together (at most 4 million: about 6 GB of springs and state).
+/// Vertices of all cloths of a scene together (at most 4 million: about 4 GB of springs and state).
 pub const MAX_VERTICES: usize = 4_000_000;
 /// Bytes of a scene file (64 MiB).
 pub const MAX_SCENE_BYTES: u64 = 64 << 20;

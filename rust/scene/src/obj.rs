@@ -198,12 +198,13 @@ impl Reader {
         }
         let count = self.positions.len();
         let distance = usize::try_from(index.unsigned_abs()).unwrap_or(usize::MAX);
+        // Forwards, a vertex may be named before its line; `finish` refuses those that never come.
         let vertex = if index < 0 { count.checked_sub(distance) } else { distance.checked_sub(1) };
         match vertex {
-            Some(vertex) if vertex < count => Ok(vertex as u32),
+            Some(vertex) if vertex < MAX_VERTICES => Ok(vertex as u32),
             _ => Err(format!(
-                "corner \"{shown}\" with {count} vertices before it; accepted: 1 to {count}, or -1 \
-                 to -{count}"
+                "corner \"{shown}\" with {count} vertices before it; accepted: counted from 1, or \
+                 from -1 backwards"
             )),
         }
     }
@@ -215,16 +216,8 @@ impl Reader {
         if self.face_lines.is_empty() {
             return Err(Error::input("there are no faces; accepted: an OBJ file with v and f"));
         }
-        let mesh = Mesh::new(self.positions.len(), self.face_starts, self.corners);
-        let mesh = mesh.map_err(|error| match error {
-            MeshError::RepeatedVertex { face, vertex } => Error::input(format!(
-                "line {}: the face passes through vertex {} twice; accepted: faces without holes \
-                 or repeated corners",
-                self.face_lines[face],
-                vertex + 1
-            )),
-            other => Error::input(other),
-        })?;
+        let mesh = Mesh::new(self.positions.len(), self.face_starts, self.corners)
+            .map_err(|error| bad_face(&error, &self.face_lines))?;
         if let Some(&vertex) = mesh.loose_vertices().first() {
             let line = self.lines[vertex as usize];
             return Err(Error::input(format!(
@@ -234,6 +227,22 @@ impl Reader {
         }
         Ok((mesh, self.positions))
     }
+}
+
+/// A face's refusal, told with its line and counted as the file counts.
+fn bad_face(error: &MeshError, lines: &[u32]) -> Error {
+    let (face, reason) = match *error {
+        MeshError::RepeatedVertex { face, vertex } => {
+            let accepted = "accepted: faces without holes or repeated corners";
+            (face, format!("the face passes through vertex {} twice; {accepted}", vertex + 1))
+        }
+        MeshError::VertexOutOfRange { face, vertex, vertex_count } => {
+            let accepted = format!("accepted: 1 to {vertex_count}");
+            (face, format!("the face names vertex {}; {accepted}", vertex + 1))
+        }
+        ref other => return Error::input(other),
+    };
+    Error::input(format!("line {}: {reason}", lines[face]))
 }
 
 #[cfg(test)]

@@ -40,6 +40,12 @@ fn vertex_colours_are_passed_over() {
 }
 
 #[test]
+fn a_face_may_stand_before_its_vertices() {
+    let (mesh, _) = read_text(&format!("f 1 2 3 4\n{SQUARE}")).expect("a good file");
+    assert_eq!(mesh.face(0), [0, 1, 2, 3]);
+}
+
+#[test]
 fn y_up_is_turned_to_z_up() {
     let text = "v 1 2 3\nv 0 0 0\nv 0 1 0\nf 1 2 3";
     let (_, positions) = read(text.as_bytes(), UpAxis::Y).expect("a good file");
@@ -69,7 +75,7 @@ fn what_is_wrong_is_refused_with_its_line() {
         ("v 0 0 1e300\n", "line 1: coordinate 1e300"),
         ("\nhello world\n", "line 2: \"hello\" is no OBJ statement"),
         ("v 0 0 0\nv 1 0 0\nf 1 2\n", "line 3: a face with 2 corners"),
-        ("v 0 0 0\nv 1 0 0\nf 1 2 3\n", "line 3: corner \"3\" with 2 vertices"),
+        ("v 0 0 0\nv 1 0 0\nf 1 2 3\n", "line 3: the face names vertex 3; accepted: 1 to 2"),
         ("v 0 0 0\nv 1 0 0\nf 1 2 0\n", "line 3: corner \"0\""),
         ("v 0 0 0\nv 1 0 0\nf 1 2 -3\n", "line 3: corner \"-3\""),
         ("v 0 0 0\nv 1 0 0\nf 1 2 9223372036854775808\n", "line 3: corner"),

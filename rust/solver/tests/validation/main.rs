@@ -1,0 +1,22 @@
+//! The solver held to closed forms and to numbers that none of its code made.
+//!
+//! Each test is a true sentence about the public [`boucle_solver::Simulation`], and each tolerance says where it
+//! comes from. The tables in `reference/` were computed independently, with numpy.
+
+mod conservation;
+mod determinism;
+mod drag;
+mod dynamics;
+mod forces;
+mod integrators;
+mod invariance;
+mod lattice;
+mod pins;
+mod plain;
+mod reference;
+mod refusals;
+mod scenes;
+mod sheets;
+mod stability;
+mod statics;
+mod wind;

@@ -75,6 +75,9 @@ pub fn integrator_word(scene: &Scene) -> &'static str {
     integrator.word()
 }
 
+/// A flat sheet in a symmetric scene buckles all the same: see [`Settings::perturbation`].
+const PERTURBATION: f64 = 1e-6;
+
 fn settings(scene: &Scene, threads: usize) -> Settings {
     Settings {
         gravity: Vector::from(scene.scene.gravity),
@@ -82,6 +85,7 @@ fn settings(scene: &Scene, threads: usize) -> Settings {
         first_frame: scene.scene.frames[0],
         integrator: scene.solver.integrator,
         step_size: scene.solver.step_size(),
+        perturbation: PERTURBATION,
         allow_unstable: scene.solver.allow_unstable,
         threads,
     }

@@ -21,6 +21,7 @@ mod law;
 mod limit;
 mod material;
 mod pins;
+mod scatter;
 mod settings;
 mod simulation;
 mod stability;

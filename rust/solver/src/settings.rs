@@ -72,6 +72,9 @@ pub struct Settings {
     pub integrator: IntegratorKind,
     /// How a frame is cut into steps.
     pub step_size: StepSize,
+    /// Height of the unevenness given to a sheet at the start, as a part of its mean edge; 1e-6 lets a flat sheet in a
+    /// symmetric scene buckle, 0 leaves it as it is.
+    pub perturbation: f64,
     /// Takes a step beyond the stability bound as asked, to show the breakdown.
     pub allow_unstable: bool,
     /// Worker threads; 0 takes every core. The result does not depend on it.
@@ -86,6 +89,7 @@ impl Default for Settings {
             first_frame: 1,
             integrator: IntegratorKind::default(),
             step_size: StepSize::default(),
+            perturbation: 0.0,
             allow_unstable: false,
             threads: 0,
         }
@@ -109,6 +113,8 @@ impl Settings {
         }
         let is_rate = (0.01..=1e6).contains(&self.fps);
         within("fps (1/s)", self.fps, "0.01 to 1e6", is_rate)?;
+        let is_small = (0.0..=0.01).contains(&self.perturbation);
+        within("perturbation", self.perturbation, "0 to 0.01", is_small)?;
         match self.step_size {
             StepSize::Auto => Ok(()),
             StepSize::Substeps(count) => {

@@ -16,6 +16,7 @@ use crate::law::spring::Law;
 use crate::limit::Limit;
 use crate::material::SpringKind;
 use crate::pins::Pins;
+use crate::scatter::scattered;
 use crate::settings::{Settings, StepSize};
 use crate::stability::{Spectrum, stiffening};
 use crate::state::State;
@@ -73,7 +74,10 @@ impl Simulation {
         let bases: Vec<u32> = bases.collect();
         let positions: Vec<Vector> =
             cloths.iter().flat_map(|cloth| cloth.positions.iter().copied()).collect();
-        let state = State::at_rest(&positions);
+        let mut state = State::at_rest(&positions);
+        if settings.perturbation > 0.0 {
+            perturb(&mut state, &cloths, settings.perturbation);
+        }
         let threads = ThreadPoolBuilder::new()
             .num_threads(settings.threads)
             .thread_name(|index| format!("boucle-{index}"))
@@ -325,6 +329,13 @@ impl Simulation {
         self.spectrum = Spectrum::of(&self.cloths, &self.system);
     }
 
+    /// The longest step (s) that every cloth's limiter keeps up with.
+    fn limited_step(&self) -> f64 {
+        let gravity = self.settings.gravity.norm();
+        let steps = self.cloths.iter().map(|cloth| Limit::longest_step(cloth, gravity));
+        steps.fold(f64::INFINITY, f64::min)
+    }
+
     /// Steps of the next frame, or why there is no such number.
     fn plan(&self) -> Result<u32> {
         let duration = self.frame_duration();
@@ -348,13 +359,35 @@ impl Simulation {
         }
         let bound = self.safe_time_step();
         match asked {
-            None => allowed((duration / (AUTO_STEP * bound)).ceil()),
+            None => allowed((duration / (AUTO_STEP * bound).min(self.limited_step())).ceil()),
             Some(count) if duration / count <= bound * (1.0 + 1e-9) => allowed(count),
             Some(count) => {
                 let substeps = (duration / bound).ceil() as u64;
                 Err(Error::Unstable { step: duration / count, bound, substeps })
             }
         }
+    }
+}
+
+/// Moves free particles along their normals by a part of the mean edge, in no order that the eye could see: a sheet
+/// that is perfectly flat in a perfectly symmetric scene would never buckle.
+fn perturb(state: &mut State, cloths: &[Cloth], part: f64) {
+    let mut base = 0;
+    for cloth in cloths {
+        let mut normals = vec![Vector::zeros(); cloth.positions.len()];
+        for (face, corners) in cloth.mesh.faces().enumerate() {
+            let area = cloth.mesh.vector_area(face, &cloth.positions);
+            corners.iter().for_each(|&corner| normals[corner as usize] += area);
+        }
+        cloth.pins.iter().for_each(|&pin| normals[pin as usize] = Vector::zeros());
+        let lengths: f64 = cloth.springs.iter().map(|spring| spring.rest_length).sum();
+        let height = part * lengths / cloth.springs.len().max(1) as f64;
+        for (vertex, normal) in normals.iter().enumerate() {
+            let direction = normal.try_normalize(0.0).unwrap_or_else(Vector::zeros);
+            let moved = cloth.positions[vertex] + height * scattered(vertex as u64) * direction;
+            state.position.set(base + vertex, &moved);
+        }
+        base += cloth.positions.len();
     }
 }
 

@@ -20,6 +20,7 @@ use nalgebra::{Complex, Matrix2};
 use crate::cloth::Cloth;
 use crate::integrator::Integrator;
 use crate::material::{DampingLaw, Limiter};
+use crate::scatter::scattered;
 use crate::system::System;
 
 /// Growth of an amplitude (1/s) that still counts as stable.
@@ -196,12 +197,4 @@ fn power_iteration(edges: &[WeightedEdge], diagonal: &[f64], inverse_masses: &[f
         vector = product.into_iter().map(|x| x / norm).collect();
     }
     eigenvalue
-}
-
-/// A number in -1 to 1 that looks random and is always the same (splitmix64).
-fn scattered(index: u64) -> f64 {
-    let mut mixed = index.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    ((mixed ^ (mixed >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }

@@ -25,7 +25,7 @@ impl Step<'_> {
             self.pins.arrive(state);
         }
         for limit in limits {
-            limit.apply(state, &self.system.inverse_masses, self.is_last);
+            limit.apply(state, &self.system.inverse_masses, self.h, self.is_last);
         }
     }
 }

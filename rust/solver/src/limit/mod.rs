@@ -31,11 +31,26 @@ impl Limit {
         }
     }
 
-    /// Moves ends that are too far apart; `is_last` marks the last step of a frame, whose result is seen.
-    pub(crate) fn apply(&mut self, state: &mut State, inverse_masses: &[f64], is_last: bool) {
+    /// The longest step (s) that a cloth's limiter keeps up with.
+    pub(crate) fn longest_step(cloth: &Cloth, gravity: f64) -> f64 {
+        match cloth.material.limiter {
+            Limiter::Project => Project::longest_step(cloth, gravity),
+            Limiter::None | Limiter::Stiffen | Limiter::Provot => f64::INFINITY,
+        }
+    }
+
+    /// Moves ends that are too far apart after a step of h seconds; `is_last` marks the last step of a frame, whose
+    /// result is seen.
+    pub(crate) fn apply(
+        &mut self,
+        state: &mut State,
+        inverse_masses: &[f64],
+        h: f64,
+        is_last: bool,
+    ) {
         match self {
-            Self::Provot(limit) => limit.apply(state, inverse_masses),
-            Self::Project(limit) => limit.apply(state, inverse_masses, is_last),
+            Self::Provot(limit) => limit.apply(state, inverse_masses, h),
+            Self::Project(limit) => limit.apply(state, inverse_masses, h, is_last),
         }
     }
 }

@@ -9,8 +9,9 @@ pub(super) struct Edge {
     pub(super) near: u32,
     pub(super) far: u32,
     pub(super) rest_length: f64,
-    /// Whether a chain of edges leads to a pin.
-    pub(super) hangs: bool,
+    /// How much the near end gives way where the far end gives way by 1: 0.1 if it is nearer to the pins by the
+    /// whole edge, 1 if it is no nearer or nothing is pinned.
+    pub(super) nearness: f64,
 }
 
 /// A distance (m) that sorts; distances are never NaN.
@@ -44,8 +45,9 @@ pub(super) fn outward(
         .map(|&([a, b], rest_length)| {
             let [da, db] = [a, b].map(|end| distances[end as usize]);
             let (near, far) = if db < da { (b, a) } else { (a, b) };
-            let hangs = da.min(db).is_finite();
-            let edge = Edge { near, far, rest_length, hangs };
+            let is_free = da.is_infinite();
+            let nearness = if is_free { 1.0 } else { 0.1_f64.powf((da - db).abs() / rest_length) };
+            let edge = Edge { near, far, rest_length, nearness };
             (Distance(da.min(db)), Distance(da.max(db)), edge)
         })
         .collect();
@@ -95,12 +97,13 @@ mod tests {
         let order = outward(&chain, 4, |particle| particle == 3);
         let ends: Vec<_> = order.iter().map(|edge| [edge.near, edge.far]).collect();
         assert_eq!(ends, [[3, 2], [2, 1], [1, 0]]);
-        assert!(order.iter().all(|edge| edge.hangs));
+        assert!(order.iter().all(|edge| (edge.nearness - 0.1).abs() < 1e-12));
     }
 
     #[test]
-    fn a_free_piece_comes_last_and_hangs_on_nothing() {
+    fn a_free_piece_comes_last_and_gives_way_evenly() {
         let order = outward(&[([0, 1], 1.0), ([2, 3], 1.0)], 4, |particle| particle == 2);
-        assert_eq!(order.iter().map(|edge| edge.hangs).collect::<Vec<_>>(), [true, false]);
+        let nearness: Vec<_> = order.iter().map(|edge| edge.nearness).collect();
+        assert!((nearness[0] - 0.1).abs() < 1e-12 && nearness[1].to_bits() == 1.0_f64.to_bits());
     }
 }

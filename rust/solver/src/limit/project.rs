@@ -1,39 +1,45 @@
-//! Position and velocity correction: edges that are too long get back to their allowed length and their ends stop
-//! separating.
+//! Position and velocity correction: both ends of an edge that is too long move back, and their velocities with them.
 //!
 //! ```text
-//! excess = |d| - (1 + rate) L0          x_near += p_near excess n       x_far -= p_far excess n
-//! s = (v_far - v_near)·n, if s > 0      v_near += q_near s n            v_far  -= q_far s n
+//! excess = |d| - (1 + rate) L0 > 0
+//! x_near += p_near excess n        x_far -= p_far excess n        v += (move of x)/h
 //! ```
 //!
-//! with n from near to far and p and q summing to 1. Where a piece hangs on pins, edges are taken outward from them
-//! and the end nearer to a pin gives way by a tenth of what the farther does: one sweep then carries a whole hanging
-//! cloth. An edge that a move has made too long again is taken again, in the same sweep if it lies farther out. Where
-//! nothing is pinned both ends give way by their inverse masses, and momentum is kept. Velocities are corrected once,
-//! after positions, and by inverse masses wherever the outward weights would add kinetic energy.
+//! with n from near to far. After each step the edges are swept inward to the pins and outward again, with p by
+//! inverse masses: momentum is kept, and a light end feels the weight that hangs on it. The next step starts from
+//! where that led, so that many small steps converge together; [`Project::longest_step`] says how small.
 //!
-//! Adding the whole displacement over the step to the velocity would pump energy; only the separating part of the
-//! relative velocity is taken away.
+//! At the end of a frame, what is left is projected away. Edges are taken outward from the pins, and the end nearer
+//! to a pin gives way the less, by a factor of ten for each edge that it is nearer: one sweep then carries a whole
+//! hanging cloth. All moves of a sweep are projections onto convex sets in one metric (a weight a particle). An edge that a move has made too long again is taken again, in the same sweep if
+//! it lies farther out. Of the velocity, the ends of moved edges lose only the part by which they separate: the whole
+//! move over the step would pump energy.
 //!
-//! Source: Zhong & Xu 2009 for position and velocity; the outward order is our own.
+//! Source: Provot 1995 and Zhong & Xu 2009 for the corrections; the outward metric is our own.
 
 use super::order::{Edge, outward};
 use crate::cloth::Cloth;
 use crate::material::SpringKind;
 use crate::state::State;
 
-/// How much the end nearer to a pin gives way where the farther gives way by 1 (measured: 0.1 settles a
-/// hanging sheet in the fewest sweeps; 0 leaves edges across the order apart, 1 is plain Gauss-Seidel).
-const NEAR_WEIGHT: f64 = 0.1;
-
 /// Elongation beyond the allowed length, relative, that is let pass: a fifth of what is promised at a rate of 10 %.
 const SLACK: f64 = 2e-4;
 
-/// Sweeps within a frame, whose errors the next step sees and mends.
-const SWEEPS_WITHIN: usize = 4;
+/// Deformation rate that steps are made for if the cloth's own is less.
+const LEAST_RATE: f64 = 0.01;
 
-/// Sweeps at the end of a frame, whose result is seen; more are of use only where pins force the strain.
-const SWEEPS_AT_END: usize = 400;
+/// Sweeps inward and outward after each step.
+const SWEEPS: usize = 2;
+
+/// Sweeps at the end of a frame: a hanging sheet takes 3 to 20, more are of use only where pins force the strain.
+const SWEEPS_AT_END: usize = 480;
+
+/// Sweeps before the metric changes. Where a hanging chain has to swing aside to reach, its near ends must give way
+/// too: then sweeps with the ends more even help.
+const SWEEPS_OF_A_METRIC: usize = 16;
+
+/// By how much the metrics even out the ends: 0 outward, 1 by inverse masses alone.
+const EVENNESS: [f64; 3] = [0.0, 0.5, 1.0];
 
 #[derive(Debug)]
 pub(crate) struct Project {
@@ -49,6 +55,20 @@ pub(crate) struct Project {
 }
 
 impl Project {
+    /// The longest step (s) in which a particle that carries a cloth's whole weight moves by no more than an edge may
+    /// get longer: with longer ones the sweeps of a step do not keep up, and end up adding energy.
+    pub(crate) fn longest_step(cloth: &Cloth, gravity: f64) -> f64 {
+        let stretch = cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Stretch);
+        let (count, length) = stretch
+            .fold((0.0, 0.0), |(count, sum), spring| (count + 1.0, sum + spring.rest_length));
+        let rate = cloth.material.deformation_rate.max(LEAST_RATE);
+        let weight_by_mass = gravity * cloth.masses.len() as f64;
+        if count == 0.0 || cloth.pins.is_empty() || weight_by_mass == 0.0 {
+            return f64::INFINITY;
+        }
+        (rate * length / count / weight_by_mass).sqrt()
+    }
+
     pub(crate) fn new(cloth: &Cloth, base: u32, inverse_masses: &[f64]) -> Self {
         let stretch = cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Stretch);
         let edges: Vec<_> = stretch.map(|spring| (spring.ends, spring.rest_length)).collect();
@@ -76,19 +96,79 @@ impl Project {
         }
     }
 
-    pub(crate) fn apply(&mut self, state: &mut State, inverse_masses: &[f64], is_last: bool) {
+    pub(crate) fn apply(
+        &mut self,
+        state: &mut State,
+        inverse_masses: &[f64],
+        h: f64,
+        is_last: bool,
+    ) {
         if !self.find_too_long(state) {
             return;
         }
-        let sweeps = if is_last { SWEEPS_AT_END } else { SWEEPS_WITHIN };
-        for _ in 0..sweeps {
-            self.sweep_positions(state, inverse_masses);
+        for _ in 0..SWEEPS {
+            let mut next = self.edges.len();
+            while let Some(rank) = self.now.last_before(next) {
+                self.correct(rank, state, inverse_masses, h);
+                next = rank;
+            }
+            let mut next = 0;
+            while let Some(rank) = self.now.first_from(next) {
+                self.correct(rank, state, inverse_masses, h);
+                next = rank + 1;
+            }
+        }
+        if is_last {
+            self.project(state, inverse_masses);
+        }
+        self.now.clear();
+    }
+
+    /// Moves the ends of one edge, and their velocities, by inverse masses.
+    fn correct(&mut self, rank: usize, state: &mut State, inverse_masses: &[f64], h: f64) {
+        let edge = self.edges[rank];
+        let [near, far] = self.ends(&edge);
+        let squared = state.position.distance_squared(near as u32, far as u32);
+        let longest = self.allowed * edge.rest_length;
+        let weights = [inverse_masses[near], inverse_masses[far]];
+        if !(squared > longest * longest) || weights == [0.0; 2] {
+            return;
+        }
+        let back = (1.0 - longest / squared.sqrt()) / (weights[0] + weights[1]);
+        for (axis, speeds) in state.position.0.iter_mut().zip(&mut state.velocity.0) {
+            let span = axis[far] - axis[near];
+            for (end, give) in [(near, weights[0]), (far, -weights[1])] {
+                let step = give * back * span;
+                axis[end] += step;
+                speeds[end] += step / h;
+            }
+        }
+        for touched in self.touched(&edge) {
+            self.now.insert(self.edges_of[touched] as usize);
+        }
+    }
+
+    /// Where in `edges_of` the edges at the ends of an edge stand.
+    fn touched(&self, edge: &Edge) -> impl Iterator<Item = usize> + use<> {
+        let [near, far] = [edge.near, edge.far]
+            .map(|end| self.starts[end as usize] as usize..self.starts[end as usize + 1] as usize);
+        near.chain(far)
+    }
+
+    fn ends(&self, edge: &Edge) -> [usize; 2] {
+        [edge.near, edge.far].map(|end| (self.base + end) as usize)
+    }
+
+    /// Moves the ends of edges that are still too long.
+    fn project(&mut self, state: &mut State, inverse_masses: &[f64]) {
+        for sweep in 0..SWEEPS_AT_END {
+            let evenness = EVENNESS[sweep / SWEEPS_OF_A_METRIC % EVENNESS.len()];
+            self.sweep_positions(state, inverse_masses, evenness);
             std::mem::swap(&mut self.now, &mut self.later);
             if self.now.is_empty() {
                 break;
             }
         }
-        self.now.clear();
         self.correct_velocities(state, inverse_masses);
         self.moved.clear();
     }
@@ -114,7 +194,7 @@ impl Project {
     }
 
     /// Takes the marked edges outward; marks for later those farther in that a move has touched.
-    fn sweep_positions(&mut self, state: &mut State, inverse_masses: &[f64]) {
+    fn sweep_positions(&mut self, state: &mut State, inverse_masses: &[f64], evenness: f64) {
         let mut rank = 0;
         while let Some(next) = self.now.take_from(rank) {
             rank = next;
@@ -123,6 +203,7 @@ impl Project {
                 continue;
             }
             let [near, far] = [edge.near, edge.far].map(|end| (self.base + end) as usize);
+            let edge = Edge { nearness: edge.nearness.powf(1.0 - evenness), ..edge };
             let Some([give_near, give_far]) = shares(&edge, near, far, inverse_masses) else {
                 continue;
             };
@@ -134,13 +215,9 @@ impl Project {
                 axis[far] -= give_far * back * span;
             }
             self.moved.insert(rank);
-            for end in [edge.near, edge.far] {
-                let edges =
-                    self.starts[end as usize] as usize..self.starts[end as usize + 1] as usize;
-                for &touched in &self.edges_of[edges] {
-                    let touched = touched as usize;
-                    if touched > rank { &mut self.now } else { &mut self.later }.insert(touched);
-                }
+            for touched in self.touched(&edge) {
+                let touched = self.edges_of[touched] as usize;
+                if touched > rank { &mut self.now } else { &mut self.later }.insert(touched);
             }
         }
     }
@@ -176,8 +253,7 @@ impl Project {
 
 /// By which parts of a correction the two ends of an edge give way; none if both are pinned.
 fn shares(edge: &Edge, near: usize, far: usize, inverse_masses: &[f64]) -> Option<[f64; 2]> {
-    let nearness = if edge.hangs { NEAR_WEIGHT } else { 1.0 };
-    let weights = [nearness * inverse_masses[near], inverse_masses[far]];
+    let weights = [edge.nearness * inverse_masses[near], inverse_masses[far]];
     let sum = weights[0] + weights[1];
     (sum > 0.0).then(|| weights.map(|weight| weight / sum))
 }
@@ -217,16 +293,33 @@ impl BitSet {
         self.words.iter().all(|&word| word == 0)
     }
 
-    /// Removes and returns the first mark at or after an index.
-    fn take_from(&mut self, index: usize) -> Option<usize> {
+    /// The first mark at or after an index.
+    fn first_from(&self, index: usize) -> Option<usize> {
         let mut word = index / 64;
         let mut bits = self.words.get(word)? & (!0 << (index % 64));
         while bits == 0 {
             word += 1;
             bits = *self.words.get(word)?;
         }
-        let bit = bits.trailing_zeros() as usize;
-        self.words[word] &= !(1 << bit);
-        Some(64 * word + bit)
+        Some(64 * word + bits.trailing_zeros() as usize)
+    }
+
+    /// The last mark before an index.
+    fn last_before(&self, index: usize) -> Option<usize> {
+        let mut word = index / 64;
+        let below = !(!0 << (index % 64));
+        let mut bits = self.words.get(word).map_or(0, |bits| bits & below);
+        while bits == 0 {
+            word = word.checked_sub(1)?;
+            bits = self.words[word];
+        }
+        Some(64 * word + 63 - bits.leading_zeros() as usize)
+    }
+
+    /// Removes and returns the first mark at or after an index.
+    fn take_from(&mut self, index: usize) -> Option<usize> {
+        let first = self.first_from(index)?;
+        self.words[first / 64] &= !(1 << (first % 64));
+        Some(first)
     }
 }

@@ -1,12 +1,14 @@
 //! Provot's correction: after each step, the ends of every stretch and shear spring that is too long are moved back
-//! to its allowed length, spring after spring, once. Velocities stay.
+//! to its allowed length, spring after spring, once.
 //!
 //! ```text
 //! excess = |d| - (1 + rate) L0
-//! x_i -= w_i/(w_i + w_j) excess n        x_j += w_j/(w_i + w_j) excess n
+//! x_i -= w_i/(w_i + w_j) excess n        x_j += w_j/(w_i + w_j) excess n        v += (move of x)/h
 //! ```
 //!
-//! One pass does not undo what its own moves stretch again, so the limit is approached, not held.
+//! The velocity follows the positions, as it does by itself in the Verlet schemes that this correction is used with:
+//! were it kept, gravity would go on adding to it, and the sheet bursts within frames. One pass does not undo what its
+//! own moves stretch again, so the limit is approached, not held.
 //!
 //! Source: Provot 1995.
 
@@ -36,7 +38,7 @@ impl Provot {
         Self { springs: limited.collect() }
     }
 
-    pub(crate) fn apply(&self, state: &mut State, inverse_masses: &[f64]) {
+    pub(crate) fn apply(&self, state: &mut State, inverse_masses: &[f64], h: f64) {
         for &Limited { ends: [a, b], longest } in &self.springs {
             let squared = state.position.distance_squared(a, b);
             if !(squared > longest * longest) {
@@ -47,10 +49,12 @@ impl Provot {
                 continue;
             }
             let back = (1.0 - longest / squared.sqrt()) / (wa + wb);
-            for axis in &mut state.position.0 {
+            for (axis, speeds) in state.position.0.iter_mut().zip(&mut state.velocity.0) {
                 let span = axis[a as usize] - axis[b as usize];
-                axis[a as usize] -= wa * back * span;
-                axis[b as usize] += wb * back * span;
+                for (end, give) in [(a, -wa), (b, wb)] {
+                    axis[end as usize] += give * back * span;
+                    speeds[end as usize] += give * back * span / h;
+                }
             }
         }
     }

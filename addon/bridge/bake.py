@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -44,6 +45,8 @@ class Bake:
         self.uid = obj.session_uid
         self._scene_name = scene.name
         self.store: Store | None = None
+        self._began = (0.0, 1 << 30)
+        """When the first frame was asked for, and which one it was."""
         self.end = self.options.frames[1] if self.options.frames else obj.boucle.frame_end
 
     @property
@@ -53,9 +56,9 @@ class Bake:
 
     def progress(self, step: Step) -> str:
         """How far the bake is, for the status bar."""
-        rows = self.store.rows.frames if self.store else []
-        simulated = [row["seconds"] for row in rows[1:]] or [0.0]
-        mean = sum(simulated) / len(simulated)
+        began, first = self._began
+        frames = step.frame - first
+        mean = (time.monotonic() - began) / frames if frames > 0 else 0.0
         return progress.line(self.name, step.frame, self.end, mean, self.end - step.frame + 1)
 
     def steps(self) -> Iterator[Step]:
@@ -83,13 +86,15 @@ class Bake:
         solver = build.result()
         self.store = self._make_store(self._object(), description, record, solver)
         is_pinned = simulation.is_pinned(description)
+
+        def pose_at(frame: int) -> Pose:
+            if frame < self._began[1]:
+                self._began = (time.monotonic(), frame)
+            return self._pose(frame, is_pinned)
+
         try:
             yield from core_bake.bake(
-                solver,
-                self.store,
-                lambda frame: self._pose(frame, is_pinned),
-                self.options.resume,
-                native.InternalError,
+                solver, self.store, pose_at, self.options.resume, native.InternalError
             )
         finally:
             self._attach(record)

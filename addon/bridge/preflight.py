@@ -44,12 +44,16 @@ def select(obj: bpy.types.Object, vertices: set[int]) -> None:
         edited.select_flush_mode()
         bmesh.update_edit_mesh(mesh)
         return
-    for parts, is_in in (
-        (mesh.vertices, lambda vertex: vertex.index in vertices),
-        (mesh.edges, lambda edge: set(edge.vertices) <= vertices),
-        (mesh.polygons, lambda face: set(face.vertices) <= vertices),
+    # In Blender 5.0 the flags of a fresh mesh may be stored as one value for all, and its own `select` then writes beyond
+    # it: they are made anew.
+    for name, domain, flags in (
+        (".select_vert", "POINT", [v.index in vertices for v in mesh.vertices]),
+        (".select_edge", "EDGE", [vertices.issuperset(edge.vertices) for edge in mesh.edges]),
+        (".select_poly", "FACE", [vertices.issuperset(face.vertices) for face in mesh.polygons]),
     ):
-        parts.foreach_set("select", [is_in(part) for part in parts])
+        if mesh.attributes.get(name) is not None:
+            mesh.attributes.remove(mesh.attributes[name])
+        mesh.attributes.new(name, "BOOLEAN", domain).data.foreach_set("value", flags)
     mesh.update()
 
 

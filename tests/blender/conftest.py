@@ -12,14 +12,17 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-VERSIONS = ("4.5", "4.2")
+VERSIONS = ("4.5", "4.2", *(["5.0"] if "BOUCLE_BPY50_PYTHON" in os.environ else []))
+"""5.0 is tested where the environment names a Python that has it."""
 SECONDS = 120
 """A scenario takes seconds; Blender that hangs must not hold up the tests."""
 
 
-def blender_42():
-    """The Python that has bpy 4.2: a venv of its own, because one Python holds one bpy."""
-    named = os.environ.get("BOUCLE_BPY42_PYTHON")
+def python_of(version):
+    """The Python that has this bpy: for 4.5 our own; for others a venv of its own, because one Python holds one bpy."""
+    if version == VERSIONS[0]:
+        return sys.executable
+    named = os.environ.get(f"BOUCLE_BPY{version.replace('.', '')}_PYTHON")
     if named:
         return named
     venv = ROOT / ".venv-bpy42"
@@ -53,7 +56,7 @@ class Blender:
         self.version = version
         self.folder = folder
         self.output = ""
-        self._python = sys.executable if version == "4.5" else blender_42()
+        self._python = python_of(version)
         resources = folder / "user"
         extensions = resources / "extensions" / "user_default"
         extensions.mkdir(parents=True)

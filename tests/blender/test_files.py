@@ -312,7 +312,6 @@ def link_library(folder):
     out["override_path"] = obj.modifiers["Boucle Cache"].filepath
     out["override_status"] = obj.boucle.status
     obj.boucle.stretch = 60.0
-    obj.boucle.uuid = ""
     out["bake"] = list(bpy.ops.boucle.bake())
     bpy.context.scene.frame_set(6)
     out["own"] = farthest(shown_positions(obj), out["override"])

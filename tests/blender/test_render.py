@@ -22,6 +22,17 @@ def small_render(folder, last=4):
     bpy.context.object.data.energy = 5.0
 
 
+def make_it_dark():
+    import bpy
+
+    world = bpy.data.worlds.new("Dark")
+    bpy.context.scene.world = world
+    world.color = (0, 0, 0)
+    for node in world.node_tree.nodes if world.node_tree else ():  # from Blender 5.0 on
+        if node.type == "BACKGROUND":
+            node.inputs["Strength"].default_value = 0.0
+
+
 def image_rows(folder, frame):
     """The lowest and highest lit row of an image, from the bottom."""
     import bpy
@@ -45,9 +56,7 @@ def render_live(folder, played):
     bpy.data.objects.remove(reference)
     bpy.context.scene.frame_set(1)
     obj = add_cloth(pin_group="", end=8)
-    world = bpy.data.worlds.new("Dark")
-    bpy.context.scene.world = world
-    world.color = (0, 0, 0)
+    make_it_dark()
     small_render(folder)
     if played == "True":
         play(1, 1)
@@ -99,9 +108,7 @@ def render_baked(folder):
     from cloths import add_cloth
 
     obj = add_cloth(pin_group="", end=6)
-    world = bpy.data.worlds.new("Dark")
-    bpy.context.scene.world = world
-    world.color = (0, 0, 0)
+    make_it_dark()
     small_render(folder)
     bpy.context.view_layer.objects.active = obj
     bpy.ops.boucle.bake()

@@ -153,13 +153,14 @@ def stop_in_a_window():
     rest = mesh_positions(obj)
     context = window([obj])
     baking = operator(context, [obj, never])
-    for _ in range(3):
+    while baking._current is None or (baking._current.last_frame or 0) < 5:
         assert baking.modal(context, Event("TIMER")) == {"RUNNING_MODAL"}
     assert baking.modal(context, Event("ESC", "RELEASE")) == {"RUNNING_MODAL"}
     state = baking.modal(context, Event("ESC"))
     stopped = obj.boucle.status
     again = operator(context, [obj], resume=True)
-    again.modal(context, Event("TIMER"))
+    while again._current is None or (again._current.last_frame or 0) < 14:
+        assert again.modal(context, Event("TIMER")) == {"RUNNING_MODAL"}
     again.cancel(context)
     return {
         "state": list(state),
@@ -185,7 +186,8 @@ def test_esc_stops_keeps_and_resume_goes_on(blender):
     def last(status):
         return int(status.split(" to ")[1].split(" ")[0])
 
-    assert last(result["cancelled"]) > last(result["stopped"]) > 1
+    assert last(result["stopped"]) >= 5
+    assert last(result["cancelled"]) >= max(14, last(result["stopped"]))
     assert result["never"].startswith("Not baked")
     assert result["timers"] == 0 and result["busy"] == []
     assert result["rest"] and result["frame"] == 1

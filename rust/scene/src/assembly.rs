@@ -88,6 +88,7 @@ fn settings(scene: &Scene, threads: usize) -> Settings {
         perturbation: PERTURBATION,
         allow_unstable: scene.solver.allow_unstable,
         threads,
+        ..Settings::default()
     }
 }
 

@@ -11,6 +11,7 @@ mod forces;
 mod integrators;
 mod invariance;
 mod lattice;
+mod limiters;
 mod pins;
 mod plain;
 mod reference;

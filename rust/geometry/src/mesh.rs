@@ -135,9 +135,7 @@ impl Mesh {
 
     /// Every face's vertices.
     pub fn faces(&self) -> impl Iterator<Item = &[u32]> {
-        self.face_starts
-            .windows(2)
-            .map(|pair| &self.corners[pair[0] as usize..pair[1] as usize])
+        self.face_starts.windows(2).map(|pair| &self.corners[pair[0] as usize..pair[1] as usize])
     }
 
     /// Every edge once, smaller vertex first, sorted.
@@ -224,10 +222,7 @@ mod tests {
     #[test]
     fn a_face_beyond_the_vertices_is_refused() {
         let error = Mesh::from_faces(3, &[[0, 1, 3]]).expect_err("no vertex 3");
-        assert_eq!(
-            error,
-            MeshError::VertexOutOfRange { face: 0, vertex: 3, vertex_count: 3 }
-        );
+        assert_eq!(error, MeshError::VertexOutOfRange { face: 0, vertex: 3, vertex_count: 3 });
     }
 
     #[test]

@@ -377,9 +377,13 @@ fn perturb(state: &mut State, cloths: &[Cloth], part: f64) {
         let mut normals = vec![Vector::zeros(); cloth.positions.len()];
         for (face, corners) in cloth.mesh.faces().enumerate() {
             let area = cloth.mesh.vector_area(face, &cloth.positions);
-            corners.iter().for_each(|&corner| normals[corner as usize] += area);
+            for &corner in corners {
+                normals[corner as usize] += area;
+            }
         }
-        cloth.pins.iter().for_each(|&pin| normals[pin as usize] = Vector::zeros());
+        for &pin in &cloth.pins {
+            normals[pin as usize] = Vector::zeros();
+        }
         let lengths: f64 = cloth.springs.iter().map(|spring| spring.rest_length).sum();
         let height = part * lengths / cloth.springs.len().max(1) as f64;
         for (vertex, normal) in normals.iter().enumerate() {

@@ -131,10 +131,11 @@ impl Project {
         let squared = state.position.distance_squared(near as u32, far as u32);
         let longest = self.allowed * edge.rest_length;
         let weights = [inverse_masses[near], inverse_masses[far]];
-        if !(squared > longest * longest) || weights == [0.0; 2] {
+        let sum = weights[0] + weights[1];
+        if !(squared > longest * longest) || sum == 0.0 {
             return;
         }
-        let back = (1.0 - longest / squared.sqrt()) / (weights[0] + weights[1]);
+        let back = (1.0 - longest / squared.sqrt()) / sum;
         for (axis, speeds) in state.position.0.iter_mut().zip(&mut state.velocity.0) {
             let span = axis[far] - axis[near];
             for (end, give) in [(near, weights[0]), (far, -weights[1])] {

@@ -139,7 +139,9 @@ fn project_keeps_the_momentum_of_a_free_sheet() {
     let settings = Settings { gravity: Vector::new(0.0, 0.0, -G), ..Settings::default() };
     let mut sheet = simulation(cloth.expect("a sheet"), settings);
     // Drawn out by 40 %, so that every row is limited as it springs back.
-    positions.iter_mut().for_each(|at| at.x *= 1.4);
+    for at in &mut positions {
+        at.x *= 1.4;
+    }
     sheet.set_positions(0, &positions);
     for frame in 1..=12 {
         sheet.advance().expect("a frame");

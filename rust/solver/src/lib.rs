@@ -13,6 +13,7 @@
 mod certificate;
 mod checkpoint;
 mod cloth;
+mod digest;
 mod error;
 mod force;
 mod integrator;
@@ -20,6 +21,7 @@ mod kernel;
 mod law;
 mod limit;
 mod material;
+mod perturbation;
 mod pins;
 mod scatter;
 mod settings;

@@ -4,19 +4,19 @@ use std::fmt;
 
 use boucle_geometry::Vector;
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use xxhash_rust::xxh3::Xxh3;
 
 use crate::certificate::{Certificate, certify, length};
 use crate::checkpoint::Checkpoint;
 use crate::cloth::{Cloth, FARTHEST};
+use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::force::Wind;
 use crate::integrator::{Integrator, Scratch, integrator};
 use crate::law::spring::Law;
 use crate::limit::Limit;
 use crate::material::SpringKind;
+use crate::perturbation::perturb;
 use crate::pins::Pins;
-use crate::scatter::scattered;
 use crate::settings::{Settings, StepSize};
 use crate::stability::{Spectrum, stiffening};
 use crate::state::State;
@@ -369,32 +369,6 @@ impl Simulation {
     }
 }
 
-/// Moves free particles along their normals by a part of the mean edge, in no order that the eye could see: a sheet
-/// that is perfectly flat in a perfectly symmetric scene would never buckle.
-fn perturb(state: &mut State, cloths: &[Cloth], part: f64) {
-    let mut base = 0;
-    for cloth in cloths {
-        let mut normals = vec![Vector::zeros(); cloth.positions.len()];
-        for (face, corners) in cloth.mesh.faces().enumerate() {
-            let area = cloth.mesh.vector_area(face, &cloth.positions);
-            for &corner in corners {
-                normals[corner as usize] += area;
-            }
-        }
-        for &pin in &cloth.pins {
-            normals[pin as usize] = Vector::zeros();
-        }
-        let lengths: f64 = cloth.springs.iter().map(|spring| spring.rest_length).sum();
-        let height = part * lengths / cloth.springs.len().max(1) as f64;
-        for (vertex, normal) in normals.iter().enumerate() {
-            let direction = normal.try_normalize(0.0).unwrap_or_else(Vector::zeros);
-            let moved = cloth.positions[vertex] + height * scattered(vertex as u64) * direction;
-            state.position.set(base + vertex, &moved);
-        }
-        base += cloth.positions.len();
-    }
-}
-
 /// The first particle that left the finite numbers, or the space in which numbers are fine enough.
 fn first_lost(state: &State) -> Option<usize> {
     let is_lost = |&particle: &usize| {
@@ -403,20 +377,4 @@ fn first_lost(state: &State) -> Option<usize> {
             || state.velocity.get(particle).iter().any(|v| !v.is_finite())
     };
     (0..state.len()).find(is_lost)
-}
-
-/// A hash of everything that the motion depends on and that does not change.
-fn digest(cloths: &[Cloth], winds: &[Wind], settings: &Settings) -> u64 {
-    let mut hasher = Xxh3::new();
-    let settings = Settings { threads: 0, ..settings.clone() };
-    // Debug output of floats is exact: the shortest text that reads back as the same bits.
-    hasher.update(format!("{settings:?} {winds:?}").as_bytes());
-    for cloth in cloths {
-        let Cloth { material, pins, springs, .. } = cloth;
-        hasher.update(format!("{material:?} {pins:?} {springs:?}").as_bytes());
-        for value in cloth.masses.iter().chain(cloth.positions.iter().flatten()) {
-            hasher.update(&value.to_le_bytes());
-        }
-    }
-    hasher.digest()
 }

@@ -12,11 +12,23 @@ pub(crate) fn digest(cloths: &[Cloth], winds: &[Wind], settings: &Settings) -> u
     let settings = Settings { threads: 0, ..settings.clone() };
     // Debug output of floats is exact: the shortest text that reads back as the same bits.
     hasher.update(format!("{settings:?} {winds:?}").as_bytes());
+    hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
     for cloth in cloths {
-        let Cloth { material, pins, springs, .. } = cloth;
-        hasher.update(format!("{material:?} {pins:?} {springs:?}").as_bytes());
-        for value in cloth.masses.iter().chain(cloth.positions.iter().flatten()) {
-            hasher.update(&value.to_le_bytes());
+        hasher.update(format!("{:?} {:?}", cloth.material, cloth.pins).as_bytes());
+        for spring in &cloth.springs {
+            let [a, b] = spring.ends;
+            for part in [a, b, spring.kind as u32] {
+                hasher.update(&part.to_le_bytes());
+            }
+            for number in [spring.rest_length, spring.stiffness, spring.damping] {
+                hasher.update(&number.to_le_bytes());
+            }
+        }
+        for corner in cloth.mesh.faces().flatten() {
+            hasher.update(&corner.to_le_bytes());
+        }
+        for number in cloth.masses.iter().chain(cloth.positions.iter().flatten()) {
+            hasher.update(&number.to_le_bytes());
         }
     }
     hasher.digest()

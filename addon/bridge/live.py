@@ -3,8 +3,11 @@
 A session belongs to one cloth and lives until the user resets it or changes a setting, the faces or the stack above the
 slot. It holds no Blender data: the cloth is found again at every event by its `session_uid`.
 
-Where the mesh may be written (see `display.may_write`), frames stand in its `position` and the rest shape in `boucle_rest`. In
-every other case they go into a temporary PC2 that the slot's Mesh Cache plays.
+Where the mesh may be written (see `display.may_write`), frames stand in its `position` and the rest shape in
+`boucle_rest`. In every other case they go into a temporary PC2 that the slot's Mesh Cache plays.
+
+The rest pose is taken when the scene comes to the start frame, or when play begins there. A script that goes to the frame
+after it at once has the pose of that frame as the rest pose.
 """
 
 from __future__ import annotations
@@ -15,7 +18,7 @@ from typing import Any
 import bpy
 
 from .. import native
-from ..core import points
+from ..core import drift, points
 from ..core.live_frames import Action, LiveFrames
 from ..core.points import Points
 from ..core.progress import size
@@ -38,7 +41,9 @@ class Session:
     is_pinned: bool
     display: display.Display
     basis: tuple[object, ...]
-    """What must not change while the session lives."""
+    """What must not change while the session lives; looked at at every frame."""
+    settings: str
+    """A digest of the settings; looked at after undo, which changes them without a word."""
     place: points.Affine
     """The object in its parent's space, when the last frame was shown."""
     waits: str = ""
@@ -127,6 +132,7 @@ def _build(
         is_pinned=simulation.is_pinned(description),
         display=shown,
         basis=_basis(obj, scene),
+        settings=_settings_digest(obj, scene),
         place=points.affine(obj.matrix_local),
     )
 
@@ -149,6 +155,15 @@ def _basis(obj: bpy.types.Object, scene: bpy.types.Scene) -> tuple[object, ...]:
     )
 
 
+def _settings_digest(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
+    """A digest of the settings, without the vertices of groups; empty if they contradict each other."""
+    try:
+        description = settings.describe(obj, scene, with_groups=False)
+    except Refusal:
+        return ""
+    return drift.whole_digest(drift.record(description, 0, ""))
+
+
 def _valid_session(obj: bpy.types.Object, scene: bpy.types.Scene) -> Session | None:
     """The session, dropped if what it stands on has changed; a left-over frame gives way to the rest shape."""
     session = session_of(obj)
@@ -160,11 +175,7 @@ def _valid_session(obj: bpy.types.Object, scene: bpy.types.Scene) -> Session | N
     return session
 
 
-def _step(
-    session: Session,
-    obj: bpy.types.Object,
-    depsgraph: bpy.types.Depsgraph,
-) -> None:
+def _step(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     if session.solver is None:
         return
     try:
@@ -233,6 +244,8 @@ def drop_all() -> None:
 
 def forget_all() -> None:
     """Forget every session without touching Blender's data, which is about to be replaced."""
+    for session in _sessions.values():
+        session.display.forget()
     _sessions.clear()
     runtime.messages.clear()
 
@@ -243,7 +256,7 @@ def revalidate(scene: bpy.types.Scene) -> None:
         obj = registry.by_uid(uid)
         if obj is None or not registry.is_cloth(obj):
             _sessions.pop(uid).display.forget()
-        elif obj.mode in EDITING_MODES:
+        elif obj.mode in EDITING_MODES or _sessions[uid].settings != _settings_digest(obj, scene):
             drop(obj)
     for obj in registry.cloths_of(scene):
         session = _valid_session(obj, scene)
@@ -296,12 +309,6 @@ def show_all(scene: bpy.types.Scene) -> None:
         session = session_of(obj)
         if session is not None and _is_live(obj):
             session.display.show(obj, session.frames, scene.frame_current)
-
-
-def show_cached_frame(obj: bpy.types.Object, frame: int) -> None:
-    """Show a kept frame of a live cloth: all that scrubbing costs."""
-    session = _sessions[obj.session_uid]
-    session.display.show(obj, session.frames, frame)
 
 
 def status(obj: bpy.types.Object) -> str:

@@ -392,6 +392,27 @@ def test_undo_and_redo_keep_the_rest_shape(blender):
     assert not result["attributes"]
 
 
+def undo_a_setting():
+    import bpy
+    from cloths import add_cloth, mesh_positions, play
+
+    obj = add_cloth()
+    rest = mesh_positions(obj)
+    bpy.ops.ed.undo_push(message="cloth")
+    obj.boucle.stretch = 900.0
+    bpy.ops.ed.undo_push(message="stretch")
+    play(1, 5)
+    bpy.ops.ed.undo()
+    obj = bpy.data.objects["Cloth"]
+    return [obj.boucle.stretch, obj.boucle.status, mesh_positions(obj) == rest]
+
+
+def test_a_setting_that_undo_changes_ends_the_live_result(blender):
+    stretch, status, is_rest = blender.run(undo_a_setting)
+    assert stretch == 500.0
+    assert status.startswith("Not baked") and is_rest
+
+
 def delete_while_live():
     import bpy
     from cloths import add_cloth, addon, play

@@ -45,7 +45,7 @@ fn viscous_air_brings_a_falling_sheet_to_weight_over_damping_with_mass_over_damp
     assert_close("at last", falling_speed(&simulation), terminal, 1e-9);
 }
 
-/// With a drag coefficient of 1: v = v_t tanh(g t/v_t). The rule's error as above.
+/// With a drag coefficient of 1: `v = v_t tanh(g t/v_t)`. The rule's error as above.
 #[test]
 fn a_flat_sheet_falls_through_air_to_the_speed_whose_pressure_carries_it() {
     let (density, air_density) = (0.2, 1.2);

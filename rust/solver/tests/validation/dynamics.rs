@@ -15,7 +15,7 @@ use crate::sheets::{
 /// rounding small too.
 #[test]
 fn a_free_cloth_falls_as_each_rule_says_and_keeps_its_shape() {
-    let (h, steps) = (1e-3, 1000);
+    let (h, steps) = (1e-3, 1000_u16);
     let n = f64::from(steps);
     let exact = 0.5 * G * (n * h).powi(2);
     let cases = [
@@ -31,7 +31,7 @@ fn a_free_cloth_falls_as_each_rule_says_and_keeps_its_shape() {
         let rest = cloth.positions.clone();
         let settings = Settings { gravity: Vector::new(0.0, 0.0, -G), ..steps_of(h, kind) };
         let mut simulation = simulation(cloth, settings);
-        run(&mut simulation, steps as usize);
+        run(&mut simulation, usize::from(steps));
         let positions = simulation.positions(0);
         assert_close(&format!("{kind:?}"), -positions[0].z, expected, 1e-12);
         let fallen: Vec<Vector> = rest.iter().map(|x| x - Vector::z() * expected).collect();
@@ -107,7 +107,9 @@ fn first_mode(count: usize) -> Vec<f64> {
             *displacement = x;
         }
         let tip = mode[count - 1];
-        mode.iter_mut().for_each(|displacement| *displacement /= tip);
+        for displacement in &mut mode {
+            *displacement /= tip;
+        }
     }
     mode
 }
@@ -176,7 +178,7 @@ fn a_damped_spring_has_the_logarithmic_decrement_of_its_damping_ratio() {
             ("air", 0.0, SpringMaterial { air_damping: c, ..undamped.clone() }),
         ];
         for (what, spring_damping, material) in cases {
-            let cloth = mass_on_spring(w * w, spring_damping, material);
+            let cloth = mass_on_spring(w * w, spring_damping, &material);
             let mut simulation = simulation(cloth, steps_of(1.0 / 200.0, IntegratorKind::Rk4));
             simulation.set_positions(0, &[Vector::zeros(), Vector::x() * (1.0 + amplitude)]);
             let swing = record(&mut simulation, 700, |now| now.positions(0)[1].x - 1.0);
@@ -194,7 +196,7 @@ fn only_the_relative_law_damps_a_turning_spring() {
     let h = 1e-3;
     for (law, expected) in [(DampingLaw::Relative, -0.3 * 0.1), (DampingLaw::Axial, 0.0)] {
         let material = SpringMaterial { damping_law: law, ..material([0.0; 3]) };
-        let cloth = mass_on_spring(1.0, 0.3, material);
+        let cloth = mass_on_spring(1.0, 0.3, &material);
         let settings = Settings {
             step_size: StepSize::Substeps(1),
             ..steps_of(h, IntegratorKind::ForwardEuler)

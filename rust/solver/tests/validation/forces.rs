@@ -74,7 +74,7 @@ fn equation_six_multiplies_the_stiffness_by_the_ratio_of_lengths_beyond_the_allo
         (2.5, 1250.0),
     ];
     for (ratio, expected) in cases {
-        let cloth = mass_on_spring(500.0, 0.0, stiffen.clone());
+        let cloth = mass_on_spring(500.0, 0.0, &stiffen);
         let positions = [Vector::zeros(), Vector::x() * ratio];
         let forces = forces_at(&cloth, &[], Vector::zeros(), &positions);
         let mut simulation = simulation(cloth, steps_of(1.0, IntegratorKind::SymplecticEuler));
@@ -89,7 +89,7 @@ fn equation_six_multiplies_the_stiffness_by_the_ratio_of_lengths_beyond_the_allo
 fn other_limiters_leave_the_stiffness_as_it_is() {
     for limiter in [Limiter::None, Limiter::Provot, Limiter::Project] {
         let material = SpringMaterial { limiter, ..material([0.0; 3]) };
-        let cloth = mass_on_spring(500.0, 0.0, material);
+        let cloth = mass_on_spring(500.0, 0.0, &material);
         let mut simulation = simulation(cloth, steps_of(1.0, IntegratorKind::SymplecticEuler));
         simulation.set_positions(0, &[Vector::zeros(), Vector::x() * 3.0]);
         assert_eq!(simulation.spring_stiffness(0)[0].to_bits(), 500f64.to_bits());
@@ -99,7 +99,7 @@ fn other_limiters_leave_the_stiffness_as_it_is() {
 /// A spring's own coefficient counts, as its own stiffness does, whatever its cloth's material says.
 #[test]
 fn a_spring_damps_by_its_own_coefficient() {
-    let mut cloth = mass_on_spring(1.0, 0.3, material([0.0; 3]));
+    let mut cloth = mass_on_spring(1.0, 0.3, &material([0.0; 3]));
     cloth.material.damping = [0.0; 3];
     let settings = steps_of(1e-3, IntegratorKind::ForwardEuler);
     let velocities = [Vector::zeros(), Vector::x()];

@@ -15,7 +15,7 @@ struct Oscillator {
 
 impl Oscillator {
     fn new(kind: IntegratorKind, z: f64, amplitude: f64) -> Self {
-        let cloth = mass_on_spring(1.0, 0.0, material([1.0, 0.0, 0.0]));
+        let cloth = mass_on_spring(1.0, 0.0, &material([1.0, 0.0, 0.0]));
         let mut simulation = simulation(cloth, steps_of(z, kind));
         simulation.set_positions(0, &[Vector::zeros(), Vector::x() * (1.0 + amplitude)]);
         Self { simulation, amplitude }
@@ -42,7 +42,8 @@ impl Oscillator {
 fn measured_matrix(kind: IntegratorKind, z: f64) -> Matrix2<f64> {
     let mut oscillator = Oscillator::new(kind, z, 0.05);
     let mut states = vec![oscillator.state()];
-    let quarter = (std::f64::consts::FRAC_PI_2 / z).round() as usize;
+    let quarter = (1..1000).find(|&i| i as f64 * z >= std::f64::consts::FRAC_PI_2);
+    let quarter: usize = quarter.expect("a step of 0.01 or more");
     states.extend((0..=quarter).map(|_| oscillator.step()));
     let before = Matrix2::from_columns(&[states[0], states[quarter]]);
     let after = Matrix2::from_columns(&[states[1], states[quarter + 1]]);

@@ -64,7 +64,7 @@ fn pulled_lattice(ks: f64, kd: f64) -> Cloth {
     let mut springs = cells.springs;
     springs.retain(|spring| spring.kind != SpringKind::Bend);
     let last = f64::from(COUNT - 1);
-    let is_border = |x: f64| x == 0.0 || x == last;
+    let is_border = |x: f64| x < 0.1 || x > last - 0.1;
     for spring in springs.iter_mut().filter(|spring| spring.kind == SpringKind::Stretch) {
         let middle = spring.ends.map(|end| positions[end as usize]).iter().sum::<Vector>() * 0.5;
         if is_border(middle.x) || is_border(middle.y) {

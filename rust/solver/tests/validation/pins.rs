@@ -77,7 +77,7 @@ fn a_released_pin_flies_on_with_the_velocity_it_had() {
 /// constant speed V, it lags as x = V (t - sin(w t)/w). The fourth-order rule is exact to 1e-9 here.
 #[test]
 fn pins_move_in_a_straight_line_at_constant_speed_within_a_frame() {
-    let cloth = crate::sheets::mass_on_spring(100.0, 0.0, material([0.0; 3]));
+    let cloth = crate::sheets::mass_on_spring(100.0, 0.0, &material([0.0; 3]));
     let rest = cloth.positions.clone();
     let settings = Settings {
         gravity: Vector::zeros(),

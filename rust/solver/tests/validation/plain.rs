@@ -9,7 +9,7 @@ use crate::sheets::grid_positions;
 
 /// A square grid of n x n particles and all that acts on it.
 pub(crate) struct Plain {
-    pub(crate) n: i32,
+    pub(crate) n: u32,
     pub(crate) spacing: f64,
     /// Of stretch, shear and bend springs (N/m).
     pub(crate) stiffness: [f64; 3],
@@ -18,14 +18,14 @@ pub(crate) struct Plain {
     pub(crate) gravity: Vector,
     pub(crate) wind_velocity: Vector,
     pub(crate) wind_coefficient: f64,
-    pub(crate) is_blown: fn(i32, i32) -> bool,
+    pub(crate) is_blown: fn(u32, u32) -> bool,
     pub(crate) pins: Vec<u32>,
 }
 
 impl Plain {
     /// Positions after some steps of h seconds from rest in the plane z = 0.
     pub(crate) fn run(&self, h: f64, steps: u32) -> Vec<Vector> {
-        let mut x = grid_positions(self.n as u32, self.n as u32, self.spacing);
+        let mut x = grid_positions(self.n, self.n, self.spacing);
         let mut v = vec![Vector::zeros(); x.len()];
         for _ in 0..steps {
             let forces: Vec<Vector> =
@@ -40,19 +40,20 @@ impl Plain {
         x
     }
 
-    fn at(&self, column: i32, row: i32) -> Option<usize> {
-        let is_there = (0..self.n).contains(&column) && (0..self.n).contains(&row);
-        is_there.then_some((row * self.n + column) as usize)
+    /// The particle some steps to the right and up, if there is one.
+    fn near(&self, column: u32, row: u32, [right, up]: [i32; 2]) -> Option<usize> {
+        let (column, row) = (column.checked_add_signed(right)?, row.checked_add_signed(up)?);
+        (column < self.n && row < self.n).then_some((row * self.n + column) as usize)
     }
 
-    fn force(&self, column: i32, row: i32, x: &[Vector], v: &[Vector]) -> Vector {
+    fn force(&self, column: u32, row: u32, x: &[Vector], v: &[Vector]) -> Vector {
         let i = (row * self.n + column) as usize;
         let mut force = self.gravity * self.mass - v[i] * self.air_damping;
         for (kind, steps) in
             [[(1, 0), (0, 1)], [(1, 1), (1, -1)], [(2, 0), (0, 2)]].iter().enumerate()
         {
             for (right, up) in steps.iter().flat_map(|&(a, b)| [(a, b), (-a, -b)]) {
-                let Some(j) = self.at(column + right, row + up) else { continue };
+                let Some(j) = self.near(column, row, [right, up]) else { continue };
                 let rest_length = self.spacing * f64::from(right * right + up * up).sqrt();
                 let span = x[i] - x[j];
                 let length = span.norm();
@@ -67,10 +68,11 @@ impl Plain {
     }
 
     /// The mean of the unit normals of the squares around a particle.
-    fn normal(&self, column: i32, row: i32, x: &[Vector]) -> Vector {
+    fn normal(&self, column: u32, row: u32, x: &[Vector]) -> Vector {
         let mut sum = Vector::zeros();
-        for (c, r) in [(-1, -1), (0, -1), (-1, 0), (0, 0)].map(|(a, b)| (column + a, row + b)) {
-            let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(a, b)| self.at(c + a, r + b));
+        for [right, up] in [[-1, -1], [0, -1], [-1, 0], [0, 0]] {
+            let corners = [[0, 0], [1, 0], [1, 1], [0, 1]]
+                .map(|[a, b]| self.near(column, row, [right + a, up + b]));
             if let [Some(a), Some(b), Some(c), Some(d)] = corners {
                 sum += (x[c] - x[a]).cross(&(x[d] - x[b])).normalize();
             }

@@ -28,9 +28,9 @@ fn demonstration() -> Plain {
 /// The same in the solver, in its own steps of 0.01 s, which its stability bound must accept.
 fn demonstration_in_the_solver(plain: &Plain) -> Simulation {
     let material = SpringMaterial { air_damping: plain.air_damping, ..material(plain.stiffness) };
-    let n = plain.n as u32;
+    let n = plain.n;
     let cloth = sheet([n, n], plain.spacing, &Mass::PerVertex(plain.mass), material, &plain.pins);
-    let blown = (0..n * n).filter(|i| (plain.is_blown)((i % n) as i32, (i / n) as i32));
+    let blown = (0..n * n).filter(|i| (plain.is_blown)(i % n, i / n));
     let wind = Wind {
         velocity: plain.wind_velocity,
         law: WindLaw::Vertex { coefficient: plain.wind_coefficient },
@@ -52,13 +52,13 @@ fn demonstration_in_the_solver(plain: &Plain) -> Simulation {
 fn the_numpy_demonstration_moves_as_the_plain_method_does() {
     let plain = demonstration();
     let mut simulation = demonstration_in_the_solver(&plain);
-    for tenths in [1, 10, 20] {
-        while simulation.frame() <= tenths {
-            run(&mut simulation, 1);
-        }
-        let expected = plain.run(0.01, 10 * tenths as u32);
+    let mut tenths = 0;
+    for frames in [1, 9, 10] {
+        run(&mut simulation, frames);
+        tenths += frames as u32;
+        let expected = plain.run(0.01, 10 * tenths);
         let error = farthest(&simulation.positions(0), &expected);
-        assert!(error < 1e-9, "after {tenths} frames: {error:e} m");
+        assert!(error < 1e-9, "after {tenths} tenths of a second: {error:e} m");
     }
 }
 
@@ -136,12 +136,19 @@ fn the_courses_sheet_on_four_corners_ends_within_its_deformation_rate() {
     assert!(middle > 0.95 * lowest && (0.1..0.8).contains(&lowest), "{lowest} m, {middle} m");
 }
 
+/// Sags (m) at four stiffnesses after 2 s, in which damping at 5.4/s brings them within a millimetre of rest.
+fn sags(pins: &[u32]) -> [f64; 4] {
+    [50.0, 500.0, 5000.0, 50_000.0].map(|ks| sag(&hung(ks, pins, Limiter::Project, 2)))
+}
+
 #[test]
-fn sag_falls_as_the_springs_stiffen_from_50_to_50000() {
-    for pins in [&TWO_CORNERS[..], &FOUR_CORNERS[..]] {
-        let sags: Vec<f64> = [50.0, 500.0, 5000.0, 50_000.0]
-            .map(|ks| sag(&hung(ks, pins, Limiter::Project, 4)))
-            .to_vec();
-        assert!(sags.windows(2).all(|pair| pair[0] > pair[1]), "{} pins: {sags:?}", pins.len());
-    }
+fn sag_from_two_corners_falls_as_the_springs_stiffen_from_50_to_50000() {
+    let sags = sags(&TWO_CORNERS);
+    assert!(sags.windows(2).all(|pair| pair[0] > pair[1] + 1e-3), "{sags:?}");
+}
+
+#[test]
+fn sag_from_four_corners_falls_as_the_springs_stiffen_from_50_to_50000() {
+    let sags = sags(&FOUR_CORNERS);
+    assert!(sags.windows(2).all(|pair| pair[0] > pair[1] + 1e-3), "{sags:?}");
 }

@@ -71,9 +71,9 @@ pub(crate) fn network(
 }
 
 /// A mass of 1 kg on a spring of 1 m along x from a pin at the origin. The damping (N·s/m) is the spring's.
-pub(crate) fn mass_on_spring(stiffness: f64, damping: f64, material: SpringMaterial) -> Cloth {
+pub(crate) fn mass_on_spring(stiffness: f64, damping: f64, material: &SpringMaterial) -> Cloth {
     let spring = Spring { damping, ..spring([0, 1], 1.0, stiffness) };
-    let material = SpringMaterial { damping: [damping, 0.0, 0.0], ..material };
+    let material = SpringMaterial { damping: [damping, 0.0, 0.0], ..material.clone() };
     network(vec![Vector::zeros(), Vector::x()], vec![spring], vec![1.0; 2], &[0], material)
 }
 

@@ -144,11 +144,12 @@ fn oscillator_limit(kind: IntegratorKind, w: f64, c: f64) -> f64 {
         let eigenvalues = Matrix2::from_columns(&columns).complex_eigenvalues();
         eigenvalues.iter().all(|value| value.norm() <= 1.0)
     };
-    let first_unstable = (1..).map(|i| f64::from(i) * 1e-4).find(|&z| !is_stable(z));
+    let first_unstable = (1..100_000).map(|i| f64::from(i) * 1e-4).find(|&z| !is_stable(z));
     first_unstable.expect("a limit") / w
 }
 
-/// Axial dampers beside springs of proportional stiffness damp every mode of the lattice by c = w² kd/k.
+/// Axial dampers beside springs of proportional stiffness damp every mode of the lattice by c = w² kd/k. They leave
+/// springs that turn undamped, so that `auto` has no step for rules that need damping.
 #[test]
 fn axial_damping_lowers_the_lattices_limit_as_the_oscillators_say_and_auto_follows() {
     let row = Table::of(LATTICES);
@@ -166,18 +167,20 @@ fn axial_damping_lowers_the_lattices_limit_as_the_oscillators_say_and_auto_follo
             assert!(below < 1e3 * SHAKE, "{kind:?}, {strength}: {below} m at 0.98");
             let above = excursion(&cloth, kind, 1.02 * limit, 10_000);
             assert!(above > 1e3 * SHAKE, "{kind:?}, {strength}: {above} m at 1.02");
-            assert_auto_is_between_half_and_all_of(limit, &cloth, kind);
+            if BOUNDED.contains(&kind) {
+                assert_auto_is_between_half_and_all_of(limit, &cloth, kind);
+            }
         }
     }
 }
 
-/// The largest step (s) that stays bounded for 3000 steps, found by trying, to half a percent.
+/// The largest step (s) that stays bounded for 2000 steps, found by trying, to a percent.
 fn tried_limit(cloth: &Cloth, kind: IntegratorKind, longest: f64) -> f64 {
     let (mut bounded, mut unbounded) = (0.0, longest);
-    assert!(excursion(cloth, kind, longest, 3000) > 1e3 * SHAKE, "{longest} s is bounded");
-    while unbounded - bounded > 0.005 * unbounded {
+    assert!(excursion(cloth, kind, longest, 2000) > 1e3 * SHAKE, "{longest} s is bounded");
+    while unbounded - bounded > 0.01 * unbounded {
         let middle = 0.5 * (bounded + unbounded);
-        let is_bounded = excursion(cloth, kind, middle, 3000) < 1e3 * SHAKE;
+        let is_bounded = excursion(cloth, kind, middle, 2000) < 1e3 * SHAKE;
         *if is_bounded { &mut bounded } else { &mut unbounded } = middle;
     }
     bounded

@@ -104,7 +104,11 @@ fn a_box_of_wind_pushes_the_vertices_inside_it_alone() {
 fn a_region_of_vertices_is_pushed_alone_and_winds_add_up() {
     let (none, flat, upright) = ([0.0; 3], [0.0, 0.0, 0.06], [0.02, 0.0, 0.0]);
     let first = wind([1.0, 2.0, 3.0], CLASSIC, Region::Vertices(vec![0, 5]));
-    assert_forces(&corner(), &[first.clone()], &[flat, none, none, none, none, upright]);
+    assert_forces(
+        &corner(),
+        std::slice::from_ref(&first),
+        &[flat, none, none, none, none, upright],
+    );
     let second = wind([1.0, 2.0, 3.0], PRESSURE, Region::Vertices(vec![5]));
     let both = [0.17, 0.0, 0.0];
     assert_forces(&corner(), &[first, second], &[flat, none, none, none, none, both]);

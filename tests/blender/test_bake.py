@@ -67,8 +67,8 @@ def test_a_bake_is_the_live_result_and_plays_without_the_add_on(blender):
     assert baked["mesh"]
     assert baked["filepath"] == f"//boucle_cache/curtain/{baked['uuid']}.pc2"
     assert baked["status"].startswith("Baked: frames 1 to 15")
-    assert baked["frames"][2] == baked["rest"]
-    assert baked["frames"][0] == baked["rest"], "before the start the rest pose is shown"
+    assert distance(baked["frames"][2], baked["rest"]) < 1e-6, "but for the solver's perturbation"
+    assert baked["frames"][0] == baked["frames"][2], "before the start the rest pose is shown"
     assert distance(baked["frames"][16], baked["live"]) < 1e-6
     assert baked["frames"][18] == baked["frames"][16], "after the end the last frame is shown"
     between = [(a + b) / 2 for a, b in zip(baked["frames"][5], baked["frames"][6], strict=True)]
@@ -103,7 +103,7 @@ def test_a_bake_leaves_a_pc2_a_report_and_a_checkpoint(blender):
         "frame", "seconds", "substeps", "iterations", "max_strain", "p99_strain", "intersections",
         "clipped", "kinetic_energy", "potential_energy", "hash",
     }  # fmt: skip
-    assert report["frames"][0]["max_strain"] == 0.0
+    assert report["frames"][0]["max_strain"] < 1e-9
 
 
 def stop_and_resume(folder):

@@ -75,7 +75,8 @@ def test_a_bake_has_a_sample_and_a_row_for_every_frame(whole):
     rows = json.loads((whole / "a.json").read_text())["frames"]
     assert [row["frame"] for row in rows] == list(range(1, END + 1))
     rest = points.transform(grid()[0], TO_OBJECT, "f")
-    assert list(pc2.read_sample(str(whole / "a.pc2"), 0)) == list(rest)
+    first = list(pc2.read_sample(str(whole / "a.pc2"), 0))
+    assert first == pytest.approx(list(rest), abs=1e-6)  # but for the solver's perturbation
     pin = pc2.read_sample(str(whole / "a.pc2"), END - 1)[60:63]
     assert list(pin) == pytest.approx([0.02 * END, 0.0, 2.0], abs=1e-6)
 

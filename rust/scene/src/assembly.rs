@@ -88,7 +88,6 @@ fn settings(scene: &Scene, threads: usize) -> Settings {
         perturbation: PERTURBATION,
         allow_unstable: scene.solver.allow_unstable,
         threads,
-        ..Settings::default()
     }
 }
 

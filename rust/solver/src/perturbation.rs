@@ -25,7 +25,8 @@ pub(crate) fn perturb(state: &mut State, cloths: &[Cloth], part: f64) {
         let height = part * lengths / cloth.springs.len().max(1) as f64;
         for (vertex, normal) in normals.iter().enumerate() {
             let direction = normal.try_normalize(0.0).unwrap_or_else(Vector::zeros);
-            let moved = cloth.positions[vertex] + height * scattered(vertex as u64) * direction;
+            let position = state.position.get(base + vertex);
+            let moved = position + height * scattered(vertex as u64) * direction;
             state.position.set(base + vertex, &moved);
         }
         base += cloth.positions.len();

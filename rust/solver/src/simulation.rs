@@ -74,10 +74,7 @@ impl Simulation {
         let bases: Vec<u32> = bases.collect();
         let positions: Vec<Vector> =
             cloths.iter().flat_map(|cloth| cloth.positions.iter().copied()).collect();
-        let mut state = State::at_rest(&positions);
-        if settings.perturbation > 0.0 {
-            perturb(&mut state, &cloths, settings.perturbation);
-        }
+        let state = State::at_rest(&positions);
         let threads = ThreadPoolBuilder::new()
             .num_threads(settings.threads)
             .thread_name(|index| format!("boucle-{index}"))
@@ -188,6 +185,9 @@ impl Simulation {
         let substeps = self.plan()?;
         let h = self.frame_duration() / f64::from(substeps);
         self.good.copy_from(&self.state);
+        if self.frame == self.settings.first_frame && self.settings.perturbation > 0.0 {
+            perturb(&mut self.state, &self.cloths, self.settings.perturbation);
+        }
         let duration = self.frame_duration();
         self.pins.start(&mut self.state, duration);
         let rule = self.integrator();

@@ -1,5 +1,6 @@
 use super::*;
 use crate::checkpoint;
+use crate::description::UpAxis;
 use crate::pc2;
 
 const SCENE: &str = r#"
@@ -79,7 +80,7 @@ fn a_bake_leaves_a_cache_a_mesh_and_a_row_for_every_frame() {
     let frames: Vec<i64> = place.hashes("out").iter().map(|row| row.0).collect();
     assert_eq!(frames, (1..=12).collect::<Vec<_>>());
     let mesh = place.bytes("out/other.obj");
-    let (mesh, _) = crate::obj::read(&mesh[..], Default::default()).expect("our own file");
+    let (mesh, _) = crate::obj::read(&mesh[..], UpAxis::default()).expect("our own file");
     assert_eq!((mesh.vertex_count(), mesh.face_count()), (20, 12));
 }
 
@@ -101,7 +102,8 @@ fn moved_pins_are_where_their_keyframes_say_and_fall_after_their_release() {
         }
     }
     assert!(vertex(12, 0)[2] < vertex(9, 0)[2] - 0.01, "released at the end of frame 9, it falls");
-    assert_eq!(vertex(12, 35), vertex(1, 35), "the other pin stays");
+    let bits = |frame| vertex(frame, 35).map(f32::to_bits);
+    assert_eq!(bits(12), bits(1), "the other pin stays");
 }
 
 #[test]
@@ -111,7 +113,7 @@ fn a_bake_that_is_stopped_at_any_frame_and_resumed_is_equal_to_the_bit() {
     for frame in 1..12 {
         let out = format!("stopped_{frame}");
         stopped_at(&place.request(&out), frame);
-        assert_eq!(place.hashes(&out).len(), frame as usize);
+        assert_eq!(place.hashes(&out).last().map(|row| row.0), Some(i64::from(frame)));
         whole(&Request { resume: true, threads: 2, ..place.request(&out) });
         assert_eq!(place.hashes(&out), place.hashes("whole"), "stopped at {frame}");
         for cache in ["sheet.pc2", "other.pc2"] {
@@ -214,7 +216,7 @@ fn a_divergence_keeps_the_frames_before_it() {
     let Error::Diverged { frame, ref cloth, .. } = error else { panic!("{error}") };
     assert_eq!(cloth, "sheet");
     let kept = place.hashes("out").len();
-    assert_eq!(kept as i32, frame - 1);
+    assert_eq!(place.hashes("out").last().map(|row| row.0), Some(i64::from(frame - 1)));
     let (header, _) = pc2::read(&place.0.path().join("out/sheet.pc2")).expect("a cache");
     assert_eq!(header.sample_count as usize, kept);
     let again = bake(&Request { resume: true, ..request }, &mut |_| ControlFlow::Continue(()));

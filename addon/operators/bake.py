@@ -161,7 +161,7 @@ class BOUCLE_OT_bake(_Baking, Operator):
 
     bl_idname = Operators.BAKE
     bl_label = "Bake"
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}  # without REGISTER: the redo panel would bake again
 
     @classmethod
     def poll(cls, context: Context) -> bool:
@@ -178,7 +178,7 @@ class BOUCLE_OT_bake_all(_Baking, Operator):
 
     bl_idname = Operators.BAKE_ALL
     bl_label = "Bake All"
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO"}  # without REGISTER: the redo panel would bake again
 
     @classmethod
     def poll(cls, context: Context) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bpy.types import Context, Panel
 
 from .._identifiers import Operators, Panels
-from .cloth import PhysicsPanel
+from .cloth import PhysicsPanel, draw_text
 
 
 class BOUCLE_PT_cache(PhysicsPanel, Panel):
@@ -37,7 +37,7 @@ class BOUCLE_PT_cache(PhysicsPanel, Panel):
         if settings.is_foreign:
             layout.operator(Operators.ADOPT_BAKE)
         for line in settings.status.split("; "):
-            layout.label(text=line)
+            draw_text(layout, line, context)
 
 
 CLASSES = (BOUCLE_PT_cache,)

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import textwrap
+
 import bpy
 from bpy.types import Context, Panel
 
 from .._identifiers import Operators, Panels
+
+
+_LETTER = 7.0
+"""Width (pixels) of a letter of the default font at scale 1."""
 
 
 class PhysicsPanel:
@@ -26,6 +32,16 @@ class PhysicsPanel:
         self.layout.use_property_split = True
         self.layout.use_property_decorate = True
         return self.layout.column()
+
+
+def draw_text(layout: bpy.types.UILayout, text: str, context: Context, icon: str = "NONE") -> None:
+    """A text in as many lines as the panel's width asks for: Blender cuts a long label in its middle."""
+    width = context.region.width if context.region else 280
+    scale = context.preferences.system.ui_scale
+    column = layout.column(align=True)
+    for line in textwrap.wrap(text, max(20, int(width / (_LETTER * scale)) - 6)):
+        column.label(text=line, icon=icon)
+        icon = "NONE" if icon == "NONE" else "BLANK1"
 
 
 class BOUCLE_PT_cloth(PhysicsPanel, Panel):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from bpy.types import Context, Panel
 
 from .._identifiers import Panels
-from .cloth import PhysicsPanel
+from .cloth import PhysicsPanel, draw_text
 
 
 class BOUCLE_PT_solver(PhysicsPanel, Panel):
@@ -21,7 +21,7 @@ class BOUCLE_PT_solver(PhysicsPanel, Panel):
         column = self.column()
         for name in ("integrator", "substeps", "time_step", "allow_unstable"):
             column.prop(settings, name)
-        self.layout.label(text=settings.safe_step, icon="TIME")
+        draw_text(self.layout, settings.safe_step, context, icon="TIME")
 
 
 CLASSES = (BOUCLE_PT_solver,)

@@ -126,11 +126,15 @@ impl Simulation {
         &self.cloths[cloth]
     }
 
-    /// The largest stable step (s) of the springs as they are now, at most a frame; 0 if there is none.
+    /// The largest stable step (s) of the springs and the wind as they are now, at most a frame; 0 if there is none.
     #[must_use]
     pub fn safe_time_step(&self) -> f64 {
         let factor = stiffening(&self.cloths, |cloth| self.longest_ratio(cloth));
-        self.spectrum.stiffened(factor).largest_step(self.integrator(), self.frame_duration())
+        let System { air, inverse_masses, .. } = &self.system;
+        let fall = self.settings.gravity.norm() * self.frame_duration();
+        let pressure = air.pressure_damping(&self.state, inverse_masses, fall);
+        let spectrum = self.spectrum.stiffened(factor).damped(pressure);
+        spectrum.largest_step(self.integrator(), self.frame_duration())
     }
 
     /// Steps that the next frame takes; 0 if there is no stable number.

@@ -37,7 +37,7 @@ const ROUNDS: usize = 60;
 pub(crate) struct Spectrum {
     /// Largest w² (1/s²).
     pub(crate) w_squared: f64,
-    /// Largest c (1/s).
+    /// Largest c (1/s), but for the pressure of wind, which depends on the state.
     pub(crate) damping: f64,
     /// Smallest c for each unit of w² (s).
     pub(crate) damping_by_stiffness: f64,
@@ -83,6 +83,11 @@ impl Spectrum {
             damping_by_stiffness: self.damping_by_stiffness / factor,
             ..self
         }
+    }
+
+    /// The same with so much more damping (1/s).
+    pub(crate) fn damped(self, damping: f64) -> Self {
+        Self { damping: self.damping + damping, ..self }
     }
 
     /// The largest stable step (s) up to `longest`.

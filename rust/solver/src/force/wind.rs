@@ -164,6 +164,35 @@ impl Air {
         coefficients.sum()
     }
 
+    /// Largest damping (1/s) that pressure puts on a particle, with faces up to `gain` (m/s) faster than in `state`.
+    ///
+    /// The slope of `1/2 rho A s²` is `rho A s`. A step that is stable for it takes no more than the whole of s.
+    pub(crate) fn pressure_damping(&self, state: &State, inverse_masses: &[f64], gain: f64) -> f64 {
+        let pressing = self.winds.iter().filter_map(|(wind, _)| match wind.law {
+            WindLaw::Face { air_density } => Some((air_density, wind.velocity)),
+            WindLaw::Vertex { .. } => None,
+        });
+        let pressing: Vec<_> = pressing.collect();
+        if pressing.is_empty() {
+            return 0.0;
+        }
+        let mut scratch = AirScratch::default();
+        self.observe(state, &mut scratch);
+        let share_of = |face: &FaceAir| {
+            let slopes = pressing.iter().map(|&(air_density, velocity)| {
+                air_density * ((velocity - face.velocity).norm() + gain)
+            });
+            slopes.sum::<f64>() * face.area * face.corner_share
+        };
+        let damping_of = |particle: usize| {
+            let starts = self.particle_starts[particle] as usize
+                ..self.particle_starts[particle + 1] as usize;
+            let faces = self.faces_of[starts].iter().map(|&face| &scratch.faces[face as usize]);
+            faces.map(share_of).sum::<f64>() * inverse_masses[particle]
+        };
+        (0..state.len()).map(damping_of).fold(0.0, f64::max)
+    }
+
     /// Looks at every face in `state`.
     pub(crate) fn observe(&self, state: &State, scratch: &mut AirScratch) {
         scratch.faces.resize(self.face_starts.len() - 1, FaceAir::default());

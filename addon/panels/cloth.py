@@ -9,7 +9,6 @@ from bpy.types import Context, Panel
 
 from .._identifiers import Operators, Panels
 
-
 _LETTER = 7.0
 """Width (pixels) of a letter of the default font at scale 1."""
 
@@ -37,7 +36,7 @@ class PhysicsPanel:
 def draw_text(layout: bpy.types.UILayout, text: str, context: Context, icon: str = "NONE") -> None:
     """A text in as many lines as the panel's width asks for: Blender cuts a long label in its middle."""
     width = context.region.width if context.region else 280
-    scale = context.preferences.system.ui_scale
+    scale = context.preferences.system.ui_scale or 1.0  # 0 in background
     column = layout.column(align=True)
     for line in textwrap.wrap(text, max(20, int(width / (_LETTER * scale)) - 6)):
         column.label(text=line, icon=icon)

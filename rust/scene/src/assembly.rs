@@ -1,7 +1,7 @@
 //! From a scene and rest meshes to a simulation whose pins follow the scene.
 
 use boucle_geometry::{Aabb, Mesh, Vector};
-use boucle_solver::{Certificate, Cloth, IntegratorKind, Region, Settings, Simulation, Wind};
+use boucle_solver::{Certificate, Cloth, Region, Settings, Simulation, Wind};
 
 use crate::description::{Choice, ClothDescription, Force, Grid, Scene};
 use crate::error::{Error, Result};
@@ -71,8 +71,7 @@ impl Assembly {
 /// The word by which scenes and reports call an integrator.
 #[must_use]
 pub fn integrator_word(scene: &Scene) -> &'static str {
-    let integrator: IntegratorKind = scene.solver.integrator;
-    integrator.word()
+    scene.solver.integrator.word()
 }
 
 /// A flat sheet in a symmetric scene buckles all the same: see [`Settings::perturbation`].

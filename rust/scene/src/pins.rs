@@ -110,11 +110,10 @@ fn vertices(group: &PinGroup, at: &str, rest: &RestMesh) -> Result<Vec<u32>> {
         let is_near = |position: &Vector| (position - middle).norm_squared() <= radius * radius;
         let inside = rest.positions.iter().enumerate().filter(|(_, position)| is_near(position));
         found.extend(inside.map(|(vertex, _)| vertex as u32));
-    }
-    if found.is_empty() {
-        let shown = format!("{:?} with radius {:?}", group.near.unwrap_or_default(), group.radius);
-        let shown = shown.replace("Some(", "").replace(')', "");
-        return Err(Error::refuse(&joined(at, "near"), shown, "a ball with a vertex in it"));
+        if found.is_empty() {
+            let shown = format!("{near:?} with radius {radius:?}");
+            return Err(Error::refuse(&joined(at, "near"), shown, "a ball with a vertex in it"));
+        }
     }
     Ok(found)
 }

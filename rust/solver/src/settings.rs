@@ -72,8 +72,8 @@ pub struct Settings {
     pub integrator: IntegratorKind,
     /// How a frame is cut into steps.
     pub step_size: StepSize,
-    /// Height of the unevenness given to a sheet as the first step starts, as a part of its mean edge; 1e-6 lets a flat sheet in a
-    /// symmetric scene buckle, 0 leaves it as it is.
+    /// Height of the unevenness given to a sheet as the first step starts, as a part of its mean edge; 1e-6 lets a
+    /// flat sheet in a symmetric scene buckle, 0 leaves it as it is.
     pub perturbation: f64,
     /// Takes a step beyond the stability bound as asked, to show the breakdown.
     pub allow_unstable: bool,

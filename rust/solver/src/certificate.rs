@@ -96,7 +96,7 @@ fn energies<'a>(
 ) -> (f64, f64) {
     let (mut kinetic, mut potential) = (0.0, 0.0);
     for (cloth, base) in cloths {
-        let law = Law::of(&cloth.material);
+        let law = Law::of(cloth);
         for (vertex, mass) in cloth.masses.iter().enumerate() {
             let particle = base as usize + vertex;
             kinetic += 0.5 * mass * state.velocity.get(particle).norm_squared();

@@ -70,10 +70,11 @@ impl Checkpoint {
         if reader.0.len() != count.checked_mul(49)? {
             return None;
         }
-        let mut state = State::default();
+        let mut state = State::zeros(count);
         for axis in state.position.0.iter_mut().chain(&mut state.velocity.0) {
-            *axis =
-                (0..count).map(|_| reader.take().map(f64::from_le_bytes)).collect::<Option<_>>()?;
+            for value in axis.iter_mut() {
+                *value = f64::from_le_bytes(reader.take()?);
+            }
         }
         let is_pinned = reader.0.iter().map(|&byte| byte != 0).collect();
         Some(Self { digest, frame, substeps, state, is_pinned })

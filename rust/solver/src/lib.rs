@@ -10,6 +10,7 @@
 //! SI units, Z up, world space, f64. The same input gives the same bits for any number of threads: every particle
 //! gathers its own forces in a fixed order, and nothing is summed across threads.
 
+mod aligned;
 mod certificate;
 mod checkpoint;
 mod cloth;

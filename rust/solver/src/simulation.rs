@@ -254,7 +254,7 @@ impl Simulation {
     #[must_use]
     pub fn spring_stiffness(&self, cloth: usize) -> Vec<f64> {
         let (cloth, base) = (&self.cloths[cloth], self.bases[cloth]);
-        let law = Law::of(&cloth.material);
+        let law = Law::of(cloth);
         let stiffness = cloth.springs.iter().map(|spring| {
             let ratio = length(&self.state, spring.ends, base) / spring.rest_length;
             law.stiffness_at(spring.stiffness, ratio)

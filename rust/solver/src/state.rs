@@ -2,13 +2,16 @@
 
 use boucle_geometry::Vector;
 
+use crate::aligned::Aligned;
+
 /// A vector for each particle, stored as three arrays so that neighbours load side by side.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Coordinates(pub(crate) [Vec<f64>; 3]);
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Coordinates(pub(crate) [Aligned; 3]);
 
 impl Coordinates {
-    pub(crate) fn zeros(count: usize) -> Self {
-        Self(std::array::from_fn(|_| vec![0.0; count]))
+    /// Zeros; `first` numbers the arrays, see [`Aligned::zeros`].
+    fn zeros(count: usize, first: usize) -> Self {
+        Self(std::array::from_fn(|axis| Aligned::zeros(count, first + axis)))
     }
 
     pub(crate) fn get(&self, particle: usize) -> Vector {
@@ -36,19 +39,24 @@ impl Coordinates {
 }
 
 /// Positions (m) and velocities (m/s).
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct State {
     pub(crate) position: Coordinates,
     pub(crate) velocity: Coordinates,
 }
 
 impl State {
+    /// All particles at the origin, at rest.
+    pub(crate) fn zeros(count: usize) -> Self {
+        Self { position: Coordinates::zeros(count, 0), velocity: Coordinates::zeros(count, 3) }
+    }
+
     pub(crate) fn at_rest(positions: &[Vector]) -> Self {
-        let mut position = Coordinates::zeros(positions.len());
+        let mut state = Self::zeros(positions.len());
         for (particle, vector) in positions.iter().enumerate() {
-            position.set(particle, vector);
+            state.position.set(particle, vector);
         }
-        Self { position, velocity: Coordinates::zeros(positions.len()) }
+        state
     }
 
     pub(crate) fn len(&self) -> usize {

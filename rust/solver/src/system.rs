@@ -5,14 +5,16 @@
 //! a_i = 0                                                           for one that is pinned
 //! ```
 
+use std::cell::Cell;
+
 use boucle_geometry::Vector;
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::cloth::Cloth;
 use crate::force::{Air, AirScratch, Wind};
-use crate::kernel::{CHUNK, ChunkVectors, Layout, add_spring_forces};
-use crate::state::State;
+use crate::kernel::{CHUNK, ChunkVectors, Layout, Windows, add_spring_forces};
+use crate::state::{Coordinates, State};
 
 /// Everything that acts on the particles; only pins change.
 #[derive(Debug)]
@@ -31,7 +33,7 @@ pub(crate) struct System {
 /// One axis of one chunk, as an integrator's update sees it. All slices run over the same particles.
 pub(crate) struct Axis<'a> {
     /// Which axis: 0, 1, 2.
-    pub(crate) axis: usize,
+    pub(crate) index: usize,
     /// First particle of the chunk.
     pub(crate) first: usize,
     /// Acceleration (m/s²) at the state that was evaluated.
@@ -40,6 +42,14 @@ pub(crate) struct Axis<'a> {
     pub(crate) position: &'a mut [f64],
     /// Velocities (m/s) to fill.
     pub(crate) velocity: &'a mut [f64],
+}
+
+impl Axis<'_> {
+    /// The same particles' and axis' part of other coordinates.
+    #[inline(always)]
+    pub(crate) fn of<'a>(&self, coordinates: &'a Coordinates) -> &'a [f64] {
+        &coordinates.0[self.index][self.first..][..self.acceleration.len()]
+    }
 }
 
 impl System {
@@ -87,26 +97,33 @@ impl System {
         let [u, v, w] = out.velocity.0.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));
         let chunks = (x, y, z, u, v, w).into_par_iter().enumerate();
         chunks.for_each(|(chunk, (x, y, z, u, v, w))| {
-            self.arch.dispatch(
-                #[inline(always)]
-                || {
-                    let mut acceleration: ChunkVectors = [[0.0; CHUNK]; 3];
-                    self.accelerations(chunk, at, air, &mut acceleration);
-                    for (axis, (position, velocity)) in
-                        [(x, u), (y, v), (z, w)].into_iter().enumerate()
-                    {
-                        let acceleration = &acceleration[axis][..position.len()];
-                        let first = chunk * CHUNK;
-                        update(Axis { axis, first, acceleration, position, velocity });
-                    }
-                },
-            );
+            let mut windows = WINDOWS.take();
+            let out = [(x, u), (y, v), (z, w)];
+            let windows_now = &mut windows;
+            self.arch.dispatch(Task {
+                system: self,
+                chunk,
+                at,
+                air,
+                out,
+                windows: windows_now,
+                update: &update,
+            });
+            WINDOWS.set(windows);
         });
     }
 
     #[inline(always)]
-    fn accelerations(&self, chunk: usize, at: &State, air: &AirScratch, out: &mut ChunkVectors) {
-        add_spring_forces(&self.layout, chunk, at, out);
+    fn accelerations<S: Simd>(
+        &self,
+        simd: S,
+        chunk: usize,
+        at: &State,
+        air: &AirScratch,
+        windows: &mut Windows,
+        out: &mut ChunkVectors,
+    ) {
+        add_spring_forces(simd, &self.layout, chunk, at, windows, out);
         if !self.air.is_still() {
             self.air.add_forces(chunk, at, air, out);
         }
@@ -120,6 +137,45 @@ impl System {
                 let free_fall = if inverse_masses[i] > 0.0 { gravity } else { 0.0 };
                 out[i] = free_fall + inverse_masses[i] * (out[i] - damping[i] * velocity[i]);
             }
+        }
+    }
+}
+
+thread_local! {
+    static WINDOWS: Cell<Windows> = Cell::default();
+}
+
+/// What a thread does at a time: the step of one chunk, compiled once for each set of instructions.
+struct Task<'a, Update> {
+    system: &'a System,
+    chunk: usize,
+    at: &'a State,
+    air: &'a AirScratch,
+    /// Positions and velocities to fill, axis by axis.
+    out: [(&'a mut [f64], &'a mut [f64]); 3],
+    windows: &'a mut Windows,
+    update: &'a Update,
+}
+
+impl<Update: Fn(Axis<'_>)> WithSimd for Task<'_, Update> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { system, chunk, at, air, out, windows, update } = self;
+        let mut acceleration: ChunkVectors = [[0.0; CHUNK]; 3];
+        system.accelerations(simd, chunk, at, air, windows, &mut acceleration);
+        for (axis, (position, velocity)) in out.into_iter().enumerate() {
+            let count = position.len();
+            let acceleration = &acceleration[axis][..count];
+            let first = chunk * CHUNK;
+            update(Axis {
+                index: axis,
+                first,
+                acceleration,
+                position,
+                velocity: &mut velocity[..count],
+            });
         }
     }
 }

@@ -19,20 +19,26 @@ pub(super) struct Leapfrog;
 impl Integrator for Leapfrog {
     fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64) {
         for (positions, velocities) in state.position.0.iter_mut().zip(&state.velocity.0) {
-            for (x, v) in positions.iter_mut().zip(velocities) {
+            for (x, v) in positions.iter_mut().zip(velocities.iter()) {
                 *x += 0.5 * h * v;
             }
         }
         let half_way = &*state;
-        system.advance(half_way, &mut scratch.next, &mut scratch.air, |chunk| {
-            let y = &half_way.position.0[chunk.axis][chunk.first..];
-            let v = &half_way.velocity.0[chunk.axis][chunk.first..];
-            for (i, a) in chunk.acceleration.iter().enumerate() {
-                let velocity = v[i] + h * a;
-                chunk.velocity[i] = velocity;
-                chunk.position[i] = y[i] + 0.5 * h * velocity;
-            }
-        });
+        system.advance(
+            half_way,
+            &mut scratch.next,
+            &mut scratch.air,
+            #[inline(always)]
+            |chunk| {
+                let y = chunk.of(&half_way.position);
+                let v = chunk.of(&half_way.velocity);
+                for (i, a) in chunk.acceleration.iter().enumerate() {
+                    let velocity = v[i] + h * a;
+                    chunk.velocity[i] = velocity;
+                    chunk.position[i] = y[i] + 0.5 * h * velocity;
+                }
+            },
+        );
         std::mem::swap(state, &mut scratch.next);
     }
 

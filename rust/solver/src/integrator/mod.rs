@@ -65,15 +65,21 @@ fn euler_stage(
     air: &mut AirScratch,
     h: f64,
 ) {
-    system.advance(at, out, air, |chunk| {
-        let x = &from.position.0[chunk.axis][chunk.first..];
-        let v = &from.velocity.0[chunk.axis][chunk.first..];
-        let rate = &at.velocity.0[chunk.axis][chunk.first..];
-        for (i, a) in chunk.acceleration.iter().enumerate() {
-            chunk.position[i] = x[i] + h * rate[i];
-            chunk.velocity[i] = v[i] + h * a;
-        }
-    });
+    system.advance(
+        at,
+        out,
+        air,
+        #[inline(always)]
+        |chunk| {
+            let x = chunk.of(&from.position);
+            let v = chunk.of(&from.velocity);
+            let rate = chunk.of(&at.velocity);
+            for (i, a) in chunk.acceleration.iter().enumerate() {
+                chunk.position[i] = x[i] + h * rate[i];
+                chunk.velocity[i] = v[i] + h * a;
+            }
+        },
+    );
 }
 
 /// The matrix of `(x, v)' = (v, -w² x - c v)`.

@@ -26,21 +26,32 @@ impl Integrator for Rk4 {
         euler_stage(system, s, s1, s2, &mut scratch.air, 0.5 * h);
         euler_stage(system, s, s2, s3, &mut scratch.air, h);
         let (s1, s2, s3) = (&*s1, &*s2, &*s3);
-        system.advance(s3, &mut scratch.next, &mut scratch.air, |chunk| {
-            let of = |state: &State, i: usize| {
-                let particle = chunk.first + i;
-                (state.position.0[chunk.axis][particle], state.velocity.0[chunk.axis][particle])
-            };
-            for (i, a) in chunk.acceleration.iter().enumerate() {
-                let ((x, v), (x1, v1)) = (of(s, i), of(s1, i));
-                let ((x2, v2), (x3, v3)) = (of(s2, i), of(s3, i));
-                // Differences from s first: they are small, and their rounding with them.
-                let (dx, dv) =
-                    ((x1 - x) + 2.0 * (x2 - x) + (x3 - x), (v1 - v) + 2.0 * (v2 - v) + (v3 - v));
-                chunk.position[i] = x + dx / 3.0 + h / 6.0 * v3;
-                chunk.velocity[i] = v + dv / 3.0 + h / 6.0 * a;
-            }
-        });
+        system.advance(
+            s3,
+            &mut scratch.next,
+            &mut scratch.air,
+            #[inline(always)]
+            |chunk| {
+                let of = |state: &State, i: usize| {
+                    let particle = chunk.first + i;
+                    (
+                        state.position.0[chunk.index][particle],
+                        state.velocity.0[chunk.index][particle],
+                    )
+                };
+                for (i, a) in chunk.acceleration.iter().enumerate() {
+                    let ((x, v), (x1, v1)) = (of(s, i), of(s1, i));
+                    let ((x2, v2), (x3, v3)) = (of(s2, i), of(s3, i));
+                    // Differences from s first: they are small, and their rounding with them.
+                    let (dx, dv) = (
+                        (x1 - x) + 2.0 * (x2 - x) + (x3 - x),
+                        (v1 - v) + 2.0 * (v2 - v) + (v3 - v),
+                    );
+                    chunk.position[i] = x + dx / 3.0 + h / 6.0 * v3;
+                    chunk.velocity[i] = v + dv / 3.0 + h / 6.0 * a;
+                }
+            },
+        );
         std::mem::swap(state, &mut scratch.next);
     }
 

@@ -17,15 +17,21 @@ pub(super) struct SymplecticEuler;
 impl Integrator for SymplecticEuler {
     fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64) {
         let old = &*state;
-        system.advance(old, &mut scratch.next, &mut scratch.air, |chunk| {
-            let x = &old.position.0[chunk.axis][chunk.first..];
-            let v = &old.velocity.0[chunk.axis][chunk.first..];
-            for (i, a) in chunk.acceleration.iter().enumerate() {
-                let velocity = v[i] + h * a;
-                chunk.velocity[i] = velocity;
-                chunk.position[i] = x[i] + h * velocity;
-            }
-        });
+        system.advance(
+            old,
+            &mut scratch.next,
+            &mut scratch.air,
+            #[inline(always)]
+            |chunk| {
+                let x = chunk.of(&old.position);
+                let v = chunk.of(&old.velocity);
+                for (i, a) in chunk.acceleration.iter().enumerate() {
+                    let velocity = v[i] + h * a;
+                    chunk.velocity[i] = velocity;
+                    chunk.position[i] = x[i] + h * velocity;
+                }
+            },
+        );
         std::mem::swap(state, &mut scratch.next);
     }
 

@@ -22,24 +22,36 @@ impl Integrator for Verlet {
     fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64) {
         let [drifted, ..] = &mut scratch.stages;
         let old = &*state;
-        system.advance(old, drifted, &mut scratch.air, |chunk| {
-            let x = &old.position.0[chunk.axis][chunk.first..];
-            let v = &old.velocity.0[chunk.axis][chunk.first..];
-            for (i, a) in chunk.acceleration.iter().enumerate() {
-                let velocity = v[i] + 0.5 * h * a;
-                chunk.velocity[i] = velocity;
-                chunk.position[i] = x[i] + h * velocity;
-            }
-        });
+        system.advance(
+            old,
+            drifted,
+            &mut scratch.air,
+            #[inline(always)]
+            |chunk| {
+                let x = chunk.of(&old.position);
+                let v = chunk.of(&old.velocity);
+                for (i, a) in chunk.acceleration.iter().enumerate() {
+                    let velocity = v[i] + 0.5 * h * a;
+                    chunk.velocity[i] = velocity;
+                    chunk.position[i] = x[i] + h * velocity;
+                }
+            },
+        );
         let drifted = &*drifted;
-        system.advance(drifted, state, &mut scratch.air, |chunk| {
-            let x = &drifted.position.0[chunk.axis][chunk.first..];
-            let u = &drifted.velocity.0[chunk.axis][chunk.first..];
-            for (i, a) in chunk.acceleration.iter().enumerate() {
-                chunk.position[i] = x[i];
-                chunk.velocity[i] = u[i] + 0.5 * h * a;
-            }
-        });
+        system.advance(
+            drifted,
+            state,
+            &mut scratch.air,
+            #[inline(always)]
+            |chunk| {
+                let x = chunk.of(&drifted.position);
+                let u = chunk.of(&drifted.velocity);
+                for (i, a) in chunk.acceleration.iter().enumerate() {
+                    chunk.position[i] = x[i];
+                    chunk.velocity[i] = u[i] + 0.5 * h * a;
+                }
+            },
+        );
     }
 
     fn amplification(&self, w_squared: f64, c: f64, h: f64) -> Matrix2<f64> {

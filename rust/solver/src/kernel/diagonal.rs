@@ -2,126 +2,107 @@
 
 use std::ops::Range;
 
+use pulp::{Scalar, Simd};
+
+use super::CHUNK;
+use super::lanes::{Lanes, difference, vectors, vectors_mut};
 use super::layout::Diagonal;
-use super::{CHUNK, ChunkVectors};
+use super::window::Window;
 use crate::law::spring::{Damping, Pull, Terms};
 use crate::state::{Coordinates, State};
 
-/// Springs computed at a time: what they pass from loop to loop stays in the nearest cache.
-const BLOCK: usize = 256;
-
-/// What the loops over a block pass on: a number a spring.
-pub(super) struct Block {
-    /// Spans (m), then forces (N).
-    spans: [[f64; BLOCK]; 3],
-    squared_lengths: [f64; BLOCK],
-    /// Squared lengths, then one over the lengths.
-    rough: [f32; BLOCK],
-}
-
-impl Block {
-    pub(super) fn new() -> Self {
-        Self { spans: [[0.0; BLOCK]; 3], squared_lengths: [0.0; BLOCK], rough: [0.0; BLOCK] }
-    }
-}
-
-/// Adds the forces of a diagonal's springs that end in a chunk.
+/// Fills a window with the forces of a diagonal's springs that end among a chunk's own particles.
 #[inline(always)]
-pub(super) fn add_diagonal<T: Terms>(
+pub(super) fn fill_window<S: Simd, T: Terms>(
+    simd: S,
     diagonal: &Diagonal,
-    chunk: usize,
+    own: &Range<usize>,
     state: &State,
-    block: &mut Block,
-    force: &mut ChunkVectors,
+    window: &mut Window<'_>,
 ) {
     let offset = diagonal.offset;
-    let own = chunk * CHUNK..((chunk + 1) * CHUNK).min(state.len());
-    let all = diagonal.first..diagonal.first + diagonal.rest_lengths.len();
-    // Springs whose second end is the chunk's own, and those whose first is.
-    let ending = own.start.saturating_sub(offset)..own.end.saturating_sub(offset).min(own.start);
-    for springs in [ending, own.clone()] {
-        let mut start = springs.start.max(all.start);
-        let end = springs.end.min(all.end);
-        while start < end {
-            let count = BLOCK.min(end - start);
-            compute::<T>(diagonal, start, count, state, block);
-            add(force, &own, start, count, block, |total, pull| total - pull);
-            add(force, &own, start + offset, count, block, |total, pull| total + pull);
-            start += count;
-        }
-    }
+    let reach = offset.min(CHUNK);
+    let lead = Window::lead(offset);
+    // Springs that arrive from particles before the chunk: spring i's force goes to the window's place i + shift.
+    let place = lead - reach..lead - reach + offset.min(own.len());
+    fill::<S, T>(simd, diagonal, state, window, place, own.start as isize - offset as isize);
+    fill::<S, T>(simd, diagonal, state, window, lead..lead + own.len(), own.start as isize);
 }
 
-/// Leaves in `block.spans` the forces on the second ends of `count` springs from particle `start` on.
+/// Fills places of a window with the forces of the springs from the `first` on, and with 0 where there are none.
 #[inline(always)]
-fn compute<T: Terms>(
+fn fill<S: Simd, T: Terms>(
+    simd: S,
     diagonal: &Diagonal,
-    start: usize,
-    count: usize,
     state: &State,
-    block: &mut Block,
+    window: &mut Window<'_>,
+    places: Range<usize>,
+    first: isize,
 ) {
-    let Block { spans: [sx, sy, sz], squared_lengths, rough } = block;
-    let (sx, sy, sz) = (&mut sx[..count], &mut sy[..count], &mut sz[..count]);
-    let (squared_lengths, rough) = (&mut squared_lengths[..count], &mut rough[..count]);
-    let [x, y, z] = cut(&state.position, start, count);
-    let [ox, oy, oz] = cut(&state.position, start + diagonal.offset, count);
-    for i in 0..count {
-        let span = [x[i] - ox[i], y[i] - oy[i], z[i] - oz[i]];
-        [sx[i], sy[i], sz[i]] = span;
-        squared_lengths[i] = Pull::squared_length(span);
-        rough[i] = squared_lengths[i] as f32;
-    }
-    for value in rough.iter_mut() {
-        *value = Pull::rough_inverse_length(*value);
-    }
-    let first = start - diagonal.first;
-    let rest_lengths = &diagonal.rest_lengths[first..first + count];
-    let [u, v, w] = cut(&state.velocity, start, count);
-    let [ou, ov, ow] = cut(&state.velocity, start + diagonal.offset, count);
-    for i in 0..count {
-        // A rest length of 0 marks a gap in the diagonal.
-        let is_there = rest_lengths[i] > 0.0;
-        let pull = Pull {
-            rest_length: if T::STIFFENS && !is_there { 1.0 } else { rest_lengths[i] },
-            stiffness: if is_there { diagonal.stiffness } else { 0.0 },
-            damping: if is_there { diagonal.damping } else { 0.0 },
-            stiffen_beyond: diagonal.law.stiffen_beyond,
-        };
-        let relative_velocity = if T::DAMPING == Damping::None {
-            [0.0; 3]
-        } else {
-            [u[i] - ou[i], v[i] - ov[i], w[i] - ow[i]]
-        };
-        let span = [sx[i], sy[i], sz[i]];
-        [sx[i], sy[i], sz[i]] =
-            pull.on_other::<T>(span, squared_lengths[i], rough[i], relative_velocity);
-    }
-}
-
-/// Adds what the particles from `start` on feel to those of them that are the chunk's own.
-#[inline(always)]
-fn add(
-    force: &mut ChunkVectors,
-    own: &Range<usize>,
-    start: usize,
-    count: usize,
-    block: &Block,
-    sum: impl Fn(f64, f64) -> f64,
-) {
-    let (from, to) = (start.max(own.start), (start + count).min(own.end));
-    if from >= to {
+    let place_of = |spring: usize| {
+        let place = places.start as isize + (spring as isize - first);
+        (place.max(places.start as isize) as usize).min(places.end)
+    };
+    let from = place_of(diagonal.first);
+    let to = place_of(diagonal.first + diagonal.rest_lengths.len()).max(from);
+    let [x, y, z] = window.axes.each_mut().map(|axis| {
+        axis[places.start..from].fill(0.0);
+        axis[to..places.end].fill(0.0);
+        &mut axis[from..to]
+    });
+    if from == to {
         return;
     }
-    for (total, pulls) in force.iter_mut().zip(&block.spans) {
-        let total = &mut total[from - own.start..to - own.start];
-        for (total, pull) in total.iter_mut().zip(&pulls[from - start..to - start]) {
-            *total = sum(*total, *pull);
-        }
+    let start = (first + (from - places.start) as isize) as usize;
+    let whole = (to - from) / S::F64_LANES * S::F64_LANES;
+    let ([x, x_rest], [y, y_rest], [z, z_rest]) =
+        (halves(x, whole), halves(y, whole), halves(z, whole));
+    pull::<S, T>(simd, diagonal, start, state, [x, y, z]);
+    pull::<Scalar, T>(Scalar::new(), diagonal, start + whole, state, [x_rest, y_rest, z_rest]);
+}
+
+#[inline(always)]
+fn halves(slice: &mut [f64], middle: usize) -> [&mut [f64]; 2] {
+    let (before, after) = slice.split_at_mut(middle);
+    [before, after]
+}
+
+/// The forces on the second ends of the springs from particle `start` on, a whole number of vectors.
+#[inline(always)]
+fn pull<S: Simd, T: Terms>(
+    simd: S,
+    diagonal: &Diagonal,
+    start: usize,
+    state: &State,
+    out: [&mut [f64]; 3],
+) {
+    let count = out[0].len();
+    let pull = Pull {
+        rest_length: Lanes::splat(simd, 0.0),
+        stiffness: Lanes::splat(simd, diagonal.stiffness),
+        damping: Lanes::splat(simd, diagonal.damping),
+        stiffen_beyond: Lanes::splat(simd, diagonal.law.stiffen_beyond),
+    };
+    let first = start - diagonal.first;
+    let rest_lengths = vectors::<S>(&diagonal.rest_lengths[first..first + count]);
+    let [x, y, z] = cut::<S>(&state.position, start, count);
+    let [ox, oy, oz] = cut::<S>(&state.position, start + diagonal.offset, count);
+    let [u, v, w] = cut::<S>(&state.velocity, start, count);
+    let [ou, ov, ow] = cut::<S>(&state.velocity, start + diagonal.offset, count);
+    let [fx, fy, fz] = out.map(|axis| vectors_mut::<S>(&mut axis[..count]));
+    for i in 0..fx.len() {
+        let span = difference(simd, [x[i], y[i], z[i]], [ox[i], oy[i], oz[i]]);
+        let velocity = if T::DAMPING == Damping::None {
+            [pull.damping; 3]
+        } else {
+            difference(simd, [u[i], v[i], w[i]], [ou[i], ov[i], ow[i]])
+        };
+        let pull = Pull { rest_length: Lanes::of(simd, rest_lengths[i]), ..pull };
+        [fx[i], fy[i], fz[i]] = pull.on_other::<T>(span, velocity).map(|force| force.values);
     }
 }
 
 #[inline(always)]
-fn cut(coordinates: &Coordinates, start: usize, count: usize) -> [&[f64]; 3] {
-    coordinates.0.each_ref().map(|axis| &axis[start..start + count])
+fn cut<S: Simd>(coordinates: &Coordinates, start: usize, count: usize) -> [&[S::f64s]; 3] {
+    coordinates.0.each_ref().map(|axis| vectors::<S>(&axis[start..start + count]))
 }

@@ -1,40 +1,46 @@
 //! Springs that lie nowhere in particular.
 
+use pulp::Simd;
+
+use super::lanes::{Lanes, difference, vectors, vectors_mut};
 use super::layout::{GATHERED, Gather, GatherSlot};
 use super::{CHUNK, ChunkVectors};
 use crate::law::spring::{Damping, Pull, Terms};
 use crate::state::{Coordinates, State};
 
+/// A vector for each gathered particle, an array an axis.
+type Gathered = [[f64; GATHERED]; 3];
+
 /// Adds the forces of gathered springs on the particles of a chunk.
 #[inline(always)]
-pub(super) fn add_gather<T: Terms>(
+pub(super) fn add_gather<S: Simd, T: Terms>(
+    simd: S,
     gather: &Gather,
     slots: &[GatherSlot],
     chunk: usize,
     state: &State,
     force: &mut ChunkVectors,
 ) {
-    let mut total = [[0.0; GATHERED]; 3];
-    let mut relative = [[0.0; GATHERED]; 3];
+    let mut total: Gathered = [[0.0; GATHERED]; 3];
+    let at = pick(&state.position, &gather.particles);
+    let moving = pick_velocity::<T>(state, &gather.particles);
     for slot in slots {
-        let spans = difference(&state.position, &gather.particles, &slot.neighbors);
-        if T::DAMPING != Damping::None {
-            relative = difference(&state.velocity, &gather.particles, &slot.neighbors);
-        }
-        for i in 0..GATHERED {
+        let other = pick(&state.position, &slot.neighbors);
+        let other_moving = pick_velocity::<T>(state, &slot.neighbors);
+        for i in 0..GATHERED / S::F64_LANES {
+            let lanes = |numbers: &[f64; GATHERED]| Lanes::of(simd, vectors::<S>(numbers)[i]);
             let pull = Pull {
-                rest_length: slot.rest_lengths[i],
-                stiffness: slot.stiffness[i],
-                damping: slot.damping[i],
-                stiffen_beyond: gather.law.stiffen_beyond,
+                rest_length: lanes(&slot.rest_lengths),
+                stiffness: lanes(&slot.stiffness),
+                damping: lanes(&slot.damping),
+                stiffen_beyond: Lanes::splat(simd, gather.law.stiffen_beyond),
             };
-            let span = [spans[0][i], spans[1][i], spans[2][i]];
-            let squared = Pull::squared_length(span);
-            let rough = Pull::rough_inverse_length(squared as f32);
-            let velocity = [relative[0][i], relative[1][i], relative[2][i]];
-            let on_neighbor = pull.on_other::<T>(span, squared, rough, velocity);
-            for axis in 0..3 {
-                total[axis][i] -= on_neighbor[axis];
+            let span = difference(simd, vector::<S>(&at, i), vector::<S>(&other, i));
+            let velocity = difference(simd, vector::<S>(&moving, i), vector::<S>(&other_moving, i));
+            let on_neighbor = pull.on_other::<T>(span, velocity);
+            for (total, force) in total.iter_mut().zip(on_neighbor) {
+                let total = &mut vectors_mut::<S>(total)[i];
+                *total = (Lanes::of(simd, *total) - force).values;
             }
         }
     }
@@ -46,12 +52,21 @@ pub(super) fn add_gather<T: Terms>(
 }
 
 #[inline(always)]
-fn difference(
-    coordinates: &Coordinates,
-    particles: &[u32; GATHERED],
-    neighbors: &[u32; GATHERED],
-) -> [[f64; GATHERED]; 3] {
-    coordinates.0.each_ref().map(|axis| {
-        std::array::from_fn(|i| axis[particles[i] as usize] - axis[neighbors[i] as usize])
-    })
+fn pick(coordinates: &Coordinates, particles: &[u32; GATHERED]) -> Gathered {
+    coordinates.0.each_ref().map(|axis| particles.map(|particle| axis[particle as usize]))
+}
+
+/// Velocities, for a law that asks for them.
+#[inline(always)]
+fn pick_velocity<T: Terms>(state: &State, particles: &[u32; GATHERED]) -> Gathered {
+    if T::DAMPING == Damping::None {
+        [[0.0; GATHERED]; 3]
+    } else {
+        pick(&state.velocity, particles)
+    }
+}
+
+#[inline(always)]
+fn vector<S: Simd>(gathered: &Gathered, i: usize) -> [S::f64s; 3] {
+    gathered.each_ref().map(|axis| vectors::<S>(axis)[i])
 }

@@ -24,6 +24,16 @@ pub(crate) struct Diagonal {
     pub(super) rest_lengths: Vec<f64>,
 }
 
+impl Diagonal {
+    /// Whether a spring of it ends among these particles.
+    pub(super) fn reaches(&self, particles: &Range<usize>) -> bool {
+        let end = self.first + self.rest_lengths.len();
+        let (first, end_of_second) = (self.first + self.offset, end + self.offset);
+        (self.first < particles.end && particles.start < end)
+            || (first < particles.end && particles.start < end_of_second)
+    }
+}
+
 /// Gathered particles that are computed side by side.
 pub(super) const GATHERED: usize = 8;
 
@@ -36,7 +46,7 @@ pub(crate) struct Gather {
     pub(super) law: Law,
 }
 
-/// One spring of each gathered particle; one that has no more is joined to itself by a spring without force.
+/// One spring of each gathered particle; one that has no more is joined to itself by no spring.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GatherSlot {
     pub(super) neighbors: [u32; GATHERED],
@@ -67,7 +77,7 @@ impl Layout {
         let mut halves = Vec::new();
         let mut laws = Vec::new();
         for cloth in cloths {
-            let law = Law::of(&cloth.material);
+            let law = Law::of(cloth);
             let base = laws.len();
             laws.resize(base + cloth.positions.len(), law);
             halves.resize(laws.len(), Vec::new());
@@ -108,7 +118,7 @@ impl Layout {
                 neighbors: std::array::from_fn(|lane| of_lane(lane) as u32),
                 stiffness: [0.0; GATHERED],
                 damping: [0.0; GATHERED],
-                rest_lengths: [1.0; GATHERED],
+                rest_lengths: [0.0; GATHERED],
             };
             for lane in 0..GATHERED {
                 let Some(half) = halves[of_lane(lane)].get(slot) else { continue };

@@ -5,44 +5,56 @@
 //! again by the chunk that they lead to, so no two threads ever share a sum, and the bits do not depend on their
 //! number. The other springs are *gathered*, one particle at a time, from both ends.
 //!
-//! The loops are plain; the compiler makes them SIMD, for the instruction set that [`crate::system`] finds. A
-//! diagonal is computed in short loops, one for each stage of the law: the chain from position to force is too long
-//! for a processor to look ahead over it.
+//! A diagonal's forces are computed first and stored, then summed: two short loops, because a processor looks ahead
+//! over a few hundred instructions only, and one spring's chain from position to force is long. The laws are written
+//! for numbers of any width ([`crate::law::number`]); [`crate::system`] finds the instruction set.
 
 mod diagonal;
 mod gather;
+mod lanes;
 mod layout;
+#[cfg(test)]
+mod tests;
+mod window;
 
 pub(crate) use layout::Layout;
+pub(crate) use window::Windows;
+
+use pulp::Simd;
+
+use diagonal::fill_window;
+use gather::add_gather;
+use window::{SIDE_BY_SIDE, add_windows};
 
 use crate::law::spring::Damping;
 use crate::state::State;
 
-/// Particles that one task handles: few enough for their forces to stay in the nearest cache.
-pub(crate) const CHUNK: usize = 1024;
+/// Particles that one task handles: enough for few springs to be computed in two chunks, and few enough for two
+/// cores to share a small cloth and for a chunk's forces to stay in a core's cache.
+pub(crate) const CHUNK: usize = 2048;
 
 /// A vector for each particle of one chunk, an array an axis.
 pub(crate) type ChunkVectors = [[f64; CHUNK]; 3];
 
 /// Calls a function with the terms of a law as its type parameter.
 macro_rules! with_terms {
-    ($law:expr, $function:ident($($argument:expr),*)) => {
+    ($law:expr, $function:ident::<$simd:ty>($($argument:expr),*)) => {
         match ($law.damping, $law.stiffen_beyond.is_finite()) {
-            (Damping::None, false) => $function::<crate::law::spring::Undamped>($($argument),*),
+            (Damping::None, false) => $function::<$simd, crate::law::spring::Undamped>($($argument),*),
             (Damping::Relative, false) => {
-                $function::<crate::law::spring::RelativelyDamped>($($argument),*)
+                $function::<$simd, crate::law::spring::RelativelyDamped>($($argument),*)
             }
             (Damping::Axial, false) => {
-                $function::<crate::law::spring::AxiallyDamped>($($argument),*)
+                $function::<$simd, crate::law::spring::AxiallyDamped>($($argument),*)
             }
             (Damping::None, true) => {
-                $function::<crate::law::spring::UndampedStiffening>($($argument),*)
+                $function::<$simd, crate::law::spring::UndampedStiffening>($($argument),*)
             }
             (Damping::Relative, true) => {
-                $function::<crate::law::spring::RelativelyDampedStiffening>($($argument),*)
+                $function::<$simd, crate::law::spring::RelativelyDampedStiffening>($($argument),*)
             }
             (Damping::Axial, true) => {
-                $function::<crate::law::spring::AxiallyDampedStiffening>($($argument),*)
+                $function::<$simd, crate::law::spring::AxiallyDampedStiffening>($($argument),*)
             }
         }
     };
@@ -52,20 +64,32 @@ macro_rules! with_terms {
 ///
 /// Inlined into its caller, to be compiled for the instruction set that the caller found.
 #[inline(always)]
-pub(crate) fn add_spring_forces(
+pub(crate) fn add_spring_forces<S: Simd>(
+    simd: S,
     layout: &Layout,
     chunk: usize,
     state: &State,
+    windows: &mut Windows,
     force: &mut ChunkVectors,
 ) {
-    use diagonal::{Block, add_diagonal};
-    use gather::add_gather;
-    let block = &mut Block::new();
-    for diagonal in &layout.diagonals {
-        with_terms!(diagonal.law, add_diagonal(diagonal, chunk, state, block, force));
+    let own = chunk * CHUNK..((chunk + 1) * CHUNK).min(state.len());
+    let mut windows = windows.each();
+    let (mut offsets, mut used) = ([0; SIDE_BY_SIDE], 0);
+    for diagonal in layout.diagonals.iter().filter(|diagonal| diagonal.reaches(&own)) {
+        let window = &mut windows[used];
+        with_terms!(diagonal.law, fill_window::<S>(simd, diagonal, &own, state, window));
+        offsets[used] = diagonal.offset;
+        used += 1;
+        if used == SIDE_BY_SIDE {
+            add_windows(simd, &windows, &offsets, used, own.len(), force);
+            used = 0;
+        }
+    }
+    if used > 0 {
+        add_windows(simd, &windows, &offsets, used, own.len(), force);
     }
     for gather in &layout.gathers[layout.gathers_of_chunk[chunk].clone()] {
         let slots = &layout.gather_slots[gather.slots.clone()];
-        with_terms!(gather.law, add_gather(gather, slots, chunk, state, force));
+        with_terms!(gather.law, add_gather::<S>(simd, gather, slots, chunk, state, force));
     }
 }

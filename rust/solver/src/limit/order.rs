@@ -32,6 +32,9 @@ impl Ord for Distance {
     }
 }
 
+/// By how much of a mean edge distances differ at least: closer ones are equal, so that rounding decides nothing.
+const RESOLUTION: f64 = 1.0 / 64.0;
+
 /// Edges sorted by the distance, along edges at rest, of their nearer end from the pins; what hangs on no pin comes
 /// last, by number.
 pub(super) fn outward(
@@ -39,7 +42,12 @@ pub(super) fn outward(
     particle_count: usize,
     is_pinned: impl Fn(u32) -> bool,
 ) -> Vec<Edge> {
-    let distances = distances(edges, particle_count, is_pinned);
+    let total: f64 = edges.iter().map(|(_, length)| length).sum();
+    let grain = RESOLUTION * total / edges.len().max(1) as f64;
+    let distances: Vec<f64> = distances(edges, particle_count, is_pinned)
+        .into_iter()
+        .map(|distance| (distance / grain).round() * grain)
+        .collect();
     let mut sorted: Vec<(Distance, Distance, Edge)> = edges
         .iter()
         .map(|&([a, b], rest_length)| {

@@ -1,0 +1,33 @@
+//! What a law of force is written in: a number, or several side by side.
+
+use std::ops::{Add, Div, Mul, Sub};
+
+/// Numbers with IEEE 754's basic operations, all rounded to nearest: the same bits however many lie side by side.
+pub(crate) trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+    /// This value wherever `self` has a number.
+    fn all(self, value: f64) -> Self;
+
+    fn sqrt(self) -> Self;
+
+    /// `self` where `sign` is above 0, else 0.
+    fn where_positive(self, sign: Self) -> Self;
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn all(self, value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn where_positive(self, sign: Self) -> Self {
+        if sign > 0.0 { self } else { 0.0 }
+    }
+}

@@ -171,8 +171,9 @@ class Baker:
         names = [(cloth.name, scene.name) for cloth, scene in scenes]
         code = DONE
         for name, scene_name in names:
-            code = self.bake_one(name, scene_name) or code
-            if code in {STOPPED, CACHE}:
+            result = self.bake_one(name, scene_name)
+            code = code or result
+            if result in {STOPPED, CACHE}:
                 break
         if self.out:
             self.write_report()

@@ -142,6 +142,7 @@ class Bake:
         threads = self.options.threads or os.cpu_count() or 1
         rows = report.Report(native.manifest_version(), bpy.data.filepath, threads, cloth)
         rows.head["integrator"] = description["solver"]["integrator"]
+        rows.head["hash_algorithm"] = "xxh3-64"
         rows.record = record
         files = self.options.files or cache.own_files(obj)
         return Store(files, plan, rows, keeps_previous=self.options.files is None)

@@ -38,5 +38,5 @@ pub use error::{Error, Result};
 pub use force::{Region, Wind, WindLaw};
 pub use law::{Spring, springs_of_mesh};
 pub use material::{DampingLaw, Limiter, SpringKind, SpringMaterial};
-pub use settings::{IntegratorKind, Settings, StepSize};
+pub use settings::{IntegratorKind, MOST_SUBSTEPS, Settings, StepSize};
 pub use simulation::Simulation;

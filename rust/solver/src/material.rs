@@ -33,11 +33,12 @@ pub enum DampingLaw {
 pub enum Limiter {
     /// Nothing.
     None,
-    /// Stiffer springs beyond the allowed length: `k L/L0` (the paper's equation 6).
+    /// Stiffer springs beyond the allowed length: `k L/L0`, the paper's equation 6 as printed. Its text once says that
+    /// the factor is the ratio to the allowed length, `L/((1 + rate) L0)`; that reading stiffens less, and is not used.
     Stiffen,
-    /// The ends are moved back (Provot 1995).
+    /// The ends of stretch and shear springs are moved back (Provot 1995).
     Provot,
-    /// The ends are moved back and lose their separating velocity (Zhong & Xu 2009).
+    /// The ends of stretch springs are moved back and lose their separating velocity (after Zhong & Xu 2009).
     #[default]
     Project,
 }

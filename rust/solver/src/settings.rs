@@ -4,6 +4,9 @@ use boucle_geometry::Vector;
 
 use crate::error::{Error, Result};
 
+/// Most substeps a frame may take.
+pub const MOST_SUBSTEPS: u32 = 200_000;
+
 /// Which rule moves the particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum IntegratorKind {

@@ -17,14 +17,11 @@ use crate::limit::Limit;
 use crate::material::SpringKind;
 use crate::perturbation::perturb;
 use crate::pins::Pins;
-use crate::settings::{Settings, StepSize};
+use crate::settings::{MOST_SUBSTEPS, Settings, StepSize};
 use crate::stability::{Spectrum, stiffening};
 use crate::state::State;
 use crate::step::Step;
 use crate::system::System;
-
-/// Most substeps a frame may take.
-const MOST_SUBSTEPS: u32 = 200_000;
 
 /// How much of the largest stable step `auto` takes.
 const AUTO_STEP: f64 = 0.95;
@@ -187,33 +184,46 @@ impl Simulation {
     /// [`Error::Unstable`] leave the state as it is.
     pub fn advance(&mut self) -> Result<Certificate> {
         let substeps = self.plan()?;
-        let h = self.frame_duration() / f64::from(substeps);
         self.good.copy_from(&self.state);
-        if self.frame == self.settings.first_frame && self.settings.perturbation > 0.0 {
-            perturb(&mut self.state, &self.cloths, self.settings.perturbation);
-        }
-        let duration = self.frame_duration();
-        self.pins.start(&mut self.state, duration);
-        let rule = self.integrator();
-        let Self { system, pins, limits, state, scratch, threads, .. } = self;
-        threads.install(|| {
-            for substep in 1..=substeps {
-                let step = Step { system, integrator: rule, pins, h, is_last: substep == substeps };
-                step.run(state, scratch, limits);
-            }
-        });
-        if let Some(particle) = first_lost(&self.state) {
+        if self.run(substeps, false).is_some() {
+            // Once more, looking after each step: what is lost spreads from step to step.
             self.state.copy_from(&self.good);
-            let cloth = self.bases.partition_point(|&base| base as usize <= particle) - 1;
-            return Err(Error::Diverged {
-                frame: self.frame + 1,
-                vertex: particle - self.bases[cloth] as usize,
-                cloth: self.cloths[cloth].name.clone(),
-            });
+            let first = self.run(substeps, true).unwrap_or(0);
+            self.state.copy_from(&self.good);
+            return Err(self.diverged(first));
         }
         self.frame += 1;
         self.substeps_taken = substeps;
         Ok(self.certificate())
+    }
+
+    /// Moves on by the steps of a frame and returns the first particle that is lost at its end; or, if it watches, as
+    /// soon as there is one.
+    fn run(&mut self, substeps: u32, watches: bool) -> Option<usize> {
+        let duration = self.frame_duration();
+        let h = duration / f64::from(substeps);
+        if self.frame == self.settings.first_frame && self.settings.perturbation > 0.0 {
+            perturb(&mut self.state, &self.cloths, self.settings.perturbation);
+        }
+        self.pins.start(&mut self.state, duration);
+        let rule = self.integrator();
+        let Self { system, pins, limits, state, scratch, threads, .. } = self;
+        threads.install(|| {
+            (1..=substeps).find_map(|substep| {
+                let is_last = substep == substeps;
+                Step { system, integrator: rule, pins, h, is_last }.run(state, scratch, limits);
+                if watches || is_last { first_lost(state) } else { None }
+            })
+        })
+    }
+
+    fn diverged(&self, particle: usize) -> Error {
+        let cloth = self.bases.partition_point(|&base| base as usize <= particle) - 1;
+        Error::Diverged {
+            frame: self.frame + 1,
+            vertex: particle - self.bases[cloth] as usize,
+            cloth: self.cloths[cloth].name.clone(),
+        }
     }
 
     /// The certificate of the present state.

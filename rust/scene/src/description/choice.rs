@@ -144,7 +144,7 @@ later_table! {
     /// `[cloth.fabric]`.
     FabricKeys {
         "stretch_warp", "stretch_weft", "shear", "bend_warp", "bend_weft", "damping_ratio",
-        "deformation_rate",
+        "deformation_rate", "preset",
     }
     /// `[collision]`.
     CollisionKeys { "self", "thickness", "friction" }

@@ -2,16 +2,13 @@
 
 use std::fmt;
 
-use boucle_solver::{IntegratorKind, StepSize};
+use boucle_solver::{IntegratorKind, MOST_SUBSTEPS, StepSize};
 use serde::de::{Deserializer, Unexpected, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::choice::{Choice, NotYet};
 use crate::error::{Error, Result};
 use crate::limits;
-
-/// Most steps that a frame may ask for.
-pub(crate) const MAX_SUBSTEPS: u32 = 1_000_000;
 
 /// How the scene is stepped.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -47,10 +44,10 @@ impl SolverDescription {
             return Err(Error::input(both));
         }
         let Some(step) = self.time_step else { return Ok(()) };
-        limits::above_zero("solver.time_step", step, 1e6, " s")?;
-        let shortest = 1.0 / (fps * f64::from(MAX_SUBSTEPS));
+        limits::above_zero("solver.time_step", step, 1e3, " s")?;
+        let shortest = 1.0 / (fps * f64::from(MOST_SUBSTEPS));
         if step < shortest {
-            let accepted = format!("at least {shortest:.3e} s ({MAX_SUBSTEPS} substeps a frame)");
+            let accepted = format!("at least {shortest:.3e} s ({MOST_SUBSTEPS} substeps a frame)");
             return Err(Error::refuse("solver.time_step", format!("{step:?}"), &accepted));
         }
         Ok(())
@@ -99,7 +96,7 @@ impl Visitor<'_> for SubstepsVisitor {
     type Value = Substeps;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "\"auto\", or a whole number from 1 to {MAX_SUBSTEPS}")
+        write!(f, "\"auto\", or a whole number from 1 to {MOST_SUBSTEPS}")
     }
 
     fn visit_str<E: serde::de::Error>(self, word: &str) -> std::result::Result<Substeps, E> {
@@ -111,7 +108,7 @@ impl Visitor<'_> for SubstepsVisitor {
 
     fn visit_i64<E: serde::de::Error>(self, count: i64) -> std::result::Result<Substeps, E> {
         match u32::try_from(count) {
-            Ok(number @ 1..=MAX_SUBSTEPS) => Ok(Substeps::Number(number)),
+            Ok(number @ 1..=MOST_SUBSTEPS) => Ok(Substeps::Number(number)),
             _ => Err(E::invalid_value(Unexpected::Signed(count), &self)),
         }
     }

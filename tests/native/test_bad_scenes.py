@@ -143,7 +143,7 @@ SCENES = [
     ("later tolerance", '"auto"', '"auto"\ntolerance = 5e-3', "solver.tolerance is not supported yet"),
     ("later model", DENSITY, 'density = 0.2\nmodel = "fabric"', 'cloth.flag.model = "fabric" is not supported yet'),
     ("later fabric", "[solver]", "[cloth.fabric]\nshear = 100.0\n[solver]", "cloth.flag.fabric.shear is not supported yet"),
-    ("later fabric preset", "[solver]", "[cloth.fabric]\npreset = \"denim\"\n[solver]", "cloth.flag.fabric.preset is not supported yet"),
+    ("fabric preset", "[solver]", '[cloth.fabric]\npreset = "denim"\n[solver]', "fabric.preset is not supported yet"),
     ("later preset", DENSITY, 'density = 0.2\npreset = "denim"', "cloth.flag.preset is not supported yet"),
     ("later continuum", "500.0", '500.0\nstiffness_from = "continuum"', '"continuum" is not supported yet'),
     ("later weight", "[0] }", "[0], weight = 0.5 }", "cloth.flag.pins.weight = 0.5 is not supported yet"),

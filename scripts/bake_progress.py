@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import sys
 import time
 from collections.abc import Iterator, Mapping
@@ -54,8 +55,17 @@ class Lines:
 
     def say(self, text: str) -> None:
         """Show a line; nobody may be reading."""
-        with contextlib.suppress(OSError):
-            print(text, flush=True)
+        print_line(text)
+
+
+def print_line(text: str) -> None:
+    """Print a line; when the reader has gone, drop it and all that follow, the flush at exit included."""
+    try:
+        print(text, flush=True)
+    except OSError:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
 
 
 class Bar:
@@ -80,8 +90,7 @@ class Bar:
 
     def say(self, text: str) -> None:
         """Show a line."""
-        with contextlib.suppress(OSError):
-            print(text, flush=True)
+        print_line(text)
 
     def close(self) -> None:
         """Leave the terminal as it was found."""

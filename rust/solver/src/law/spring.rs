@@ -15,8 +15,6 @@
 //!
 //! Source: Provot 1995; axial damping after the course notes of Baraff & Witkin 1997.
 
-use boucle_geometry::Vector;
-
 use super::number::Number;
 use crate::cloth::Cloth;
 use crate::material::{DampingLaw, Limiter, SpringKind};
@@ -34,14 +32,6 @@ pub struct Spring {
     pub stiffness: f64,
     /// Damping (N·s/m).
     pub damping: f64,
-}
-
-impl Spring {
-    /// The vector from the second end to the first (m).
-    #[must_use]
-    pub fn span(&self, positions: &[Vector]) -> Vector {
-        positions[self.ends[0] as usize] - positions[self.ends[1] as usize]
-    }
 }
 
 /// Added to squared lengths (m²), for ends that coincide: rounding loses it in all others.

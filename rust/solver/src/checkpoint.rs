@@ -2,7 +2,10 @@
 //!
 //! ```text
 //! "BOUCLECK" | version u32 | digest u64 | frame i32 | substeps u32 | particles u64
-//! | positions and velocities, f64, axis by axis | pinned, a byte each | XXH3-64 of all before
+//! | positions and velocities, f64, axis by axis | pinned, a byte each
+//! | implicit integrators only: edges u64 | substeps u32 | step f64 | error f64
+//! |     positions and velocities before | tension f64 of each edge
+//! | XXH3-64 of all before
 //! ```
 //!
 //! All little-endian.
@@ -10,10 +13,11 @@
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::error::{Error, Result};
+use crate::implicit::Memory;
 use crate::state::State;
 
 const MAGIC: &[u8; 8] = b"BOUCLECK";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 const HEADER: usize = 36;
 
 /// What a checkpoint holds.
@@ -25,6 +29,7 @@ pub(crate) struct Checkpoint {
     pub(crate) substeps: u32,
     pub(crate) state: State,
     pub(crate) is_pinned: Vec<bool>,
+    pub(crate) memory: Option<Memory>,
 }
 
 impl Checkpoint {
@@ -37,10 +42,16 @@ impl Checkpoint {
         bytes.extend_from_slice(&self.frame.to_le_bytes());
         bytes.extend_from_slice(&self.substeps.to_le_bytes());
         bytes.extend_from_slice(&(count as u64).to_le_bytes());
-        for axis in self.state.position.0.iter().chain(&self.state.velocity.0) {
-            bytes.extend(axis.iter().flat_map(|value| value.to_le_bytes()));
-        }
+        write_state(&mut bytes, &self.state);
         bytes.extend(self.is_pinned.iter().map(|&is_pinned| u8::from(is_pinned)));
+        if let Some(memory) = &self.memory {
+            bytes.extend_from_slice(&(memory.tensions.len() as u64).to_le_bytes());
+            bytes.extend_from_slice(&memory.substeps.to_le_bytes());
+            bytes.extend_from_slice(&memory.step.to_le_bytes());
+            bytes.extend_from_slice(&memory.error.to_le_bytes());
+            write_state(&mut bytes, &memory.before);
+            bytes.extend(memory.tensions.iter().flat_map(|value| value.to_le_bytes()));
+        }
         let checksum = xxh3_64(&bytes);
         bytes.extend_from_slice(&checksum.to_le_bytes());
         bytes
@@ -57,7 +68,7 @@ impl Checkpoint {
             return Err(damaged());
         }
         if reader.take().map(u32::from_le_bytes) != Some(VERSION) {
-            return Err(Error::BadCheckpoint("is of another version; accepted: version 1"));
+            return Err(Error::BadCheckpoint("is of another version; accepted: version 2"));
         }
         Self::read_body(&mut reader).ok_or_else(damaged)
     }
@@ -66,18 +77,35 @@ impl Checkpoint {
         let digest = u64::from_le_bytes(reader.take()?);
         let frame = i32::from_le_bytes(reader.take()?);
         let substeps = u32::from_le_bytes(reader.take()?);
-        let count = usize::try_from(u64::from_le_bytes(reader.take()?)).ok()?;
-        if reader.0.len() != count.checked_mul(49)? {
+        let count = reader.count()?;
+        if reader.0.len() < count.checked_mul(49)? {
             return None;
         }
-        let mut state = State::zeros(count);
-        for axis in state.position.0.iter_mut().chain(&mut state.velocity.0) {
-            for value in axis.iter_mut() {
-                *value = f64::from_le_bytes(reader.take()?);
-            }
+        let state = reader.state(count)?;
+        let (pins, rest) = reader.0.split_at(count);
+        reader.0 = rest;
+        let is_pinned = pins.iter().map(|&byte| byte != 0).collect();
+        let memory = if rest.is_empty() { None } else { Some(Self::read_memory(reader, count)?) };
+        reader.0.is_empty().then_some(Self { digest, frame, substeps, state, is_pinned, memory })
+    }
+
+    fn read_memory(reader: &mut Reader<'_>, count: usize) -> Option<Memory> {
+        let edge_count = reader.count()?;
+        let substeps = u32::from_le_bytes(reader.take()?);
+        let [step, error] = [reader.number()?, reader.number()?];
+        let bytes = edge_count.checked_mul(8)?.checked_add(count.checked_mul(48)?)?;
+        if reader.0.len() != bytes {
+            return None;
         }
-        let is_pinned = reader.0.iter().map(|&byte| byte != 0).collect();
-        Some(Self { digest, frame, substeps, state, is_pinned })
+        let before = reader.state(count)?;
+        let tensions = (0..edge_count).map(|_| reader.number()).collect::<Option<_>>()?;
+        Some(Memory { before, step, tensions, error, substeps })
+    }
+}
+
+fn write_state(bytes: &mut Vec<u8>, state: &State) {
+    for axis in state.position.0.iter().chain(&state.velocity.0) {
+        bytes.extend(axis.iter().flat_map(|value| value.to_le_bytes()));
     }
 }
 
@@ -89,6 +117,24 @@ impl Reader<'_> {
         self.0 = rest;
         Some(*taken)
     }
+
+    fn number(&mut self) -> Option<f64> {
+        self.take().map(f64::from_le_bytes)
+    }
+
+    fn count(&mut self) -> Option<usize> {
+        usize::try_from(u64::from_le_bytes(self.take()?)).ok()
+    }
+
+    fn state(&mut self, count: usize) -> Option<State> {
+        let mut state = State::zeros(count);
+        for axis in state.position.0.iter_mut().chain(&mut state.velocity.0) {
+            for value in axis.iter_mut() {
+                *value = self.number()?;
+            }
+        }
+        Some(state)
+    }
 }
 
 #[cfg(test)]
@@ -99,13 +145,19 @@ mod tests {
 
     fn checkpoint() -> Checkpoint {
         let state = State::at_rest(&[Vector::new(1.0, -0.0, 3.5), Vector::new(0.1, 1e-300, 7.0)]);
-        Checkpoint { digest: 7, frame: -3, substeps: 9, state, is_pinned: vec![true, false] }
+        let mut memory = Memory::new(&state, 3);
+        (memory.tensions[1], memory.step, memory.substeps) = (2.5, 0.01, 4);
+        let is_pinned = vec![true, false];
+        let memory = Some(memory);
+        Checkpoint { digest: 7, frame: -3, substeps: 9, state, is_pinned, memory }
     }
 
     #[test]
     fn a_checkpoint_reads_back_as_it_was_written() {
-        let bytes = checkpoint().to_bytes();
-        assert_eq!(Checkpoint::from_bytes(&bytes), Ok(checkpoint()));
+        for memory in [checkpoint().memory, None] {
+            let checkpoint = Checkpoint { memory, ..checkpoint() };
+            assert_eq!(Checkpoint::from_bytes(&checkpoint.to_bytes()), Ok(checkpoint));
+        }
     }
 
     #[test]

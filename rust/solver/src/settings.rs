@@ -23,17 +23,23 @@ pub enum IntegratorKind {
     Midpoint,
     /// The classic Runge-Kutta of order 4.
     Rk4,
+    /// Implicit Euler, linearised: stable at any step, damps.
+    ImplicitEuler,
+    /// BDF2, linearised: stable at any step, damps far less.
+    Bdf2,
 }
 
 impl IntegratorKind {
     /// Every integrator.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 8] = [
         Self::ForwardEuler,
         Self::SymplecticEuler,
         Self::Verlet,
         Self::Leapfrog,
         Self::Midpoint,
         Self::Rk4,
+        Self::ImplicitEuler,
+        Self::Bdf2,
     ];
 
     /// The name in scene files and panels.
@@ -46,6 +52,8 @@ impl IntegratorKind {
             Self::Leapfrog => "leapfrog",
             Self::Midpoint => "midpoint",
             Self::Rk4 => "rk4",
+            Self::ImplicitEuler => "implicit_euler",
+            Self::Bdf2 => "bdf2",
         }
     }
 }

@@ -11,10 +11,12 @@ use crate::cloth::{Cloth, FARTHEST};
 use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::force::Wind;
-use crate::integrator::{Integrator, Scratch, integrator};
+use crate::implicit::Memory;
+use crate::integrator::explicit;
 use crate::law::spring::Law;
 use crate::limit::Limit;
 use crate::material::SpringKind;
+use crate::motion::Motion;
 use crate::perturbation::perturb;
 use crate::pins::Pins;
 use crate::settings::{MOST_SUBSTEPS, Settings, StepSize};
@@ -40,10 +42,13 @@ pub struct Simulation {
     state: State,
     /// The state at the start of a frame, to fall back on.
     good: State,
-    scratch: Scratch,
+    good_memory: Option<Memory>,
+    motion: Motion,
     frame: i32,
     /// Steps that led to the present frame.
     substeps_taken: u32,
+    /// Iterations of the linear solver in those.
+    iterations_taken: u32,
     threads: ThreadPool,
 }
 
@@ -81,15 +86,18 @@ impl Simulation {
             .iter()
             .zip(&cloths)
             .flat_map(|(base, cloth)| cloth.pins.iter().map(move |pin| base + pin));
+        let system = System::new(&cloths, winds, settings.gravity);
         let mut simulation = Self {
             pins: Pins::new(pinned, &state),
-            system: System::new(&cloths, winds, settings.gravity),
+            motion: Motion::new(settings.integrator, &cloths, &system, &state),
+            system,
             spectrum: Spectrum::default(),
             limits: Vec::new(),
             good: state.clone(),
-            scratch: Scratch::new(&state),
+            good_memory: None,
             frame: settings.first_frame,
             substeps_taken: 0,
+            iterations_taken: 0,
             cloths,
             bases,
             settings,
@@ -126,12 +134,15 @@ impl Simulation {
     /// The largest stable step (s) of the springs and the wind as they are now, at most a frame; 0 if there is none.
     #[must_use]
     pub fn safe_time_step(&self) -> f64 {
+        let Some(rule) = explicit(self.settings.integrator) else {
+            return self.frame_duration();
+        };
         let factor = stiffening(&self.cloths, |cloth| self.longest_ratio(cloth));
         let System { air, inverse_masses, .. } = &self.system;
         let fall = self.settings.gravity.norm() * self.frame_duration();
         let pressure = air.pressure_damping(&self.state, inverse_masses, fall);
         let spectrum = self.spectrum.stiffened(factor).damped(pressure);
-        spectrum.largest_step(self.integrator(), self.frame_duration())
+        spectrum.largest_step(rule, self.frame_duration())
     }
 
     /// Steps that the next frame takes; 0 if there is no stable number.
@@ -168,6 +179,9 @@ impl Simulation {
             self.state.position.set(base + vertex, position);
             self.state.velocity.set(base + vertex, &Vector::zeros());
         }
+        if let Some(memory) = self.motion.memory_mut() {
+            memory.clear();
+        }
         let state = &self.state;
         let end = base + self.cloths[cloth].positions.len();
         self.pins.aim(|particle| {
@@ -184,17 +198,34 @@ impl Simulation {
     /// [`Error::Unstable`] leave the state as it is.
     pub fn advance(&mut self) -> Result<Certificate> {
         let substeps = self.plan()?;
-        self.good.copy_from(&self.state);
+        self.keep();
         if self.run(substeps, false).is_some() {
             // Once more, looking after each step: what is lost spreads from step to step.
-            self.state.copy_from(&self.good);
+            self.fall_back();
             let first = self.run(substeps, true).unwrap_or(0);
-            self.state.copy_from(&self.good);
+            self.fall_back();
             return Err(self.diverged(first));
         }
         self.frame += 1;
         self.substeps_taken = substeps;
+        self.iterations_taken = self.motion.take_iterations();
         Ok(self.certificate())
+    }
+
+    /// Keeps the state, to fall back on it.
+    fn keep(&mut self) {
+        self.good.copy_from(&self.state);
+        if let Some(memory) = self.motion.memory() {
+            self.good_memory.get_or_insert_with(|| memory.clone()).copy_from(memory);
+        }
+    }
+
+    /// Returns to the state that was kept.
+    fn fall_back(&mut self) {
+        self.state.copy_from(&self.good);
+        if let (Some(memory), Some(good)) = (self.motion.memory_mut(), &self.good_memory) {
+            memory.copy_from(good);
+        }
     }
 
     /// Moves on by the steps of a frame and returns the first particle that is lost at its end; or, if it watches, as
@@ -206,12 +237,11 @@ impl Simulation {
             perturb(&mut self.state, &self.cloths, self.settings.perturbation);
         }
         self.pins.start(&mut self.state, duration);
-        let rule = self.integrator();
-        let Self { system, pins, limits, state, scratch, threads, .. } = self;
+        let Self { system, pins, limits, state, motion, threads, .. } = self;
         threads.install(|| {
             (1..=substeps).find_map(|substep| {
                 let is_last = substep == substeps;
-                Step { system, integrator: rule, pins, h, is_last }.run(state, scratch, limits);
+                Step { system, pins, h, is_last }.run(state, motion, limits);
                 if watches || is_last { first_lost(state) } else { None }
             })
         })
@@ -230,7 +260,9 @@ impl Simulation {
     #[must_use]
     pub fn certificate(&self) -> Certificate {
         let cloths = self.cloths.iter().zip(self.bases.iter().copied());
-        certify(cloths, &self.state, &self.settings.gravity, self.frame, self.substeps_taken)
+        let certificate =
+            certify(cloths, &self.state, &self.settings.gravity, self.frame, self.substeps_taken);
+        Certificate { iterations: self.iterations_taken, ..certificate }
     }
 
     /// Positions (m) of a cloth's vertices, world space.
@@ -281,6 +313,7 @@ impl Simulation {
             frame: self.frame,
             substeps: self.substeps_taken,
             state: self.state.clone(),
+            memory: self.motion.memory().cloned(),
             is_pinned: (0..count).map(|particle| self.system.is_pinned(particle)).collect(),
         };
         checkpoint.to_bytes()
@@ -297,6 +330,9 @@ impl Simulation {
                 "is of another scene or other settings; accepted: the one that it was made from",
             ));
         }
+        if let (Some(memory), Some(restored)) = (self.motion.memory_mut(), checkpoint.memory) {
+            *memory = restored;
+        }
         self.state = checkpoint.state;
         self.frame = checkpoint.frame;
         self.substeps_taken = checkpoint.substeps;
@@ -304,10 +340,6 @@ impl Simulation {
         self.pins = Pins::new(pinned.map(|(particle, _)| particle as u32), &self.state);
         self.follow_pins();
         Ok(())
-    }
-
-    fn integrator(&self) -> &'static dyn Integrator {
-        integrator(self.settings.integrator)
     }
 
     fn frame_duration(&self) -> f64 {
@@ -333,6 +365,7 @@ impl Simulation {
         for particle in 0..self.state.len() {
             self.system.set_pinned(particle, false);
         }
+        self.motion.follow_pins();
         for particle in self.pins.particles() {
             self.system.set_pinned(particle as usize, true);
         }
@@ -366,8 +399,12 @@ impl Simulation {
             let integrator = self.settings.integrator.name();
             Err(Error::TooManySubsteps { substeps: count, limit: MOST_SUBSTEPS, integrator })
         };
+        let is_implicit = explicit(self.settings.integrator).is_none();
+        if is_implicit && asked.is_none() {
+            return Ok(4);
+        }
         if let Some(count) = asked
-            && self.settings.allow_unstable
+            && (self.settings.allow_unstable || is_implicit)
         {
             return allowed(count);
         }

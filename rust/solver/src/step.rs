@@ -1,7 +1,7 @@
 //! One substep: a table of contents.
 
-use crate::integrator::{Integrator, Scratch};
 use crate::limit::Limit;
+use crate::motion::Motion;
 use crate::pins::Pins;
 use crate::state::State;
 use crate::system::System;
@@ -9,7 +9,6 @@ use crate::system::System;
 /// What a substep works with.
 pub(crate) struct Step<'a> {
     pub(crate) system: &'a System,
-    pub(crate) integrator: &'a dyn Integrator,
     pub(crate) pins: &'a Pins,
     /// Length (s).
     pub(crate) h: f64,
@@ -19,13 +18,17 @@ pub(crate) struct Step<'a> {
 
 impl Step<'_> {
     /// Moves the state by one substep.
-    pub(crate) fn run(&self, state: &mut State, scratch: &mut Scratch, limits: &mut [Limit]) {
-        self.integrator.step(self.system, state, scratch, self.h);
+    pub(crate) fn run(&self, state: &mut State, motion: &mut Motion, limits: &mut [Limit]) {
+        motion.step(self.system, state, self.h);
         if self.is_last {
             self.pins.arrive(state);
         }
         for limit in limits {
-            limit.apply(state, &self.system.inverse_masses, self.h, self.is_last);
+            if motion.is_implicit() {
+                limit.hold(state, &self.system.inverse_masses, self.h);
+            } else {
+                limit.apply(state, &self.system.inverse_masses, self.h, self.is_last);
+            }
         }
     }
 }

@@ -19,10 +19,11 @@ use crate::state::{Coordinates, State};
 /// Everything that acts on the particles; only pins change.
 #[derive(Debug)]
 pub(crate) struct System {
-    layout: Layout,
+    pub(crate) layout: Layout,
     pub(crate) air: Air,
-    gravity: Vector,
-    masses: Vec<f64>,
+    pub(crate) gravity: Vector,
+    /// kg, of pinned particles too.
+    pub(crate) masses: Vec<f64>,
     /// 1/m (1/kg), 0 where pinned.
     pub(crate) inverse_masses: Vec<f64>,
     /// Viscous air damping (N·s/m) of each particle.

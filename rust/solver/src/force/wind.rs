@@ -164,6 +164,25 @@ impl Air {
         coefficients.sum()
     }
 
+    /// Damping (N·s/m) that winds put on a particle, at most; faces as they were last observed.
+    pub(crate) fn damping_of(&self, particle: usize, scratch: &AirScratch) -> f64 {
+        let of_wind = |wind: &Wind| match wind.law {
+            WindLaw::Vertex { coefficient } => coefficient,
+            WindLaw::Face { air_density } => {
+                let starts = self.particle_starts[particle] as usize
+                    ..self.particle_starts[particle + 1] as usize;
+                let faces = self.faces_of[starts].iter();
+                let of_face = |&face: &u32| {
+                    let face = &scratch.faces[face as usize];
+                    let speed = (wind.velocity - face.velocity).dot(&face.normal);
+                    face.corner_share * face.area * air_density * speed.abs()
+                };
+                faces.map(of_face).sum()
+            }
+        };
+        self.winds.iter().map(|(wind, _)| of_wind(wind)).sum()
+    }
+
     /// Largest damping (1/s) that pressure puts on a particle, with faces up to `gain` (m/s) faster than in `state`.
     ///
     /// The slope of `1/2 rho A s²` is `rho A s`. A step that is stable for it takes no more than the whole of s.

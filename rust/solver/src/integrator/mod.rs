@@ -44,15 +44,16 @@ pub(crate) trait Integrator: Send + Sync {
     fn amplification(&self, w_squared: f64, c: f64, h: f64) -> Matrix2<f64>;
 }
 
-/// The rule of a name.
-pub(crate) fn integrator(kind: IntegratorKind) -> &'static dyn Integrator {
+/// The explicit rule of a name; none for the implicit ones, see [`crate::implicit`].
+pub(crate) fn explicit(kind: IntegratorKind) -> Option<&'static dyn Integrator> {
     match kind {
-        IntegratorKind::ForwardEuler => &forward_euler::ForwardEuler,
-        IntegratorKind::SymplecticEuler => &symplectic_euler::SymplecticEuler,
-        IntegratorKind::Verlet => &verlet::Verlet,
-        IntegratorKind::Leapfrog => &leapfrog::Leapfrog,
-        IntegratorKind::Midpoint => &midpoint::Midpoint,
-        IntegratorKind::Rk4 => &rk4::Rk4,
+        IntegratorKind::ForwardEuler => Some(&forward_euler::ForwardEuler),
+        IntegratorKind::SymplecticEuler => Some(&symplectic_euler::SymplecticEuler),
+        IntegratorKind::Verlet => Some(&verlet::Verlet),
+        IntegratorKind::Leapfrog => Some(&leapfrog::Leapfrog),
+        IntegratorKind::Midpoint => Some(&midpoint::Midpoint),
+        IntegratorKind::Rk4 => Some(&rk4::Rk4),
+        IntegratorKind::ImplicitEuler | IntegratorKind::Bdf2 => None,
     }
 }
 

@@ -15,18 +15,18 @@ const SPARSEST: usize = 8;
 #[derive(Clone, Debug)]
 pub(crate) struct Diagonal {
     /// The particle of the first rest length.
-    pub(super) first: usize,
-    pub(super) offset: usize,
-    pub(super) stiffness: f64,
-    pub(super) damping: f64,
-    pub(super) law: Law,
+    pub(crate) first: usize,
+    pub(crate) offset: usize,
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
+    pub(crate) law: Law,
     /// For each particle in a row (m); 0 where it has no such spring.
-    pub(super) rest_lengths: Vec<f64>,
+    pub(crate) rest_lengths: Vec<f64>,
 }
 
 impl Diagonal {
     /// Whether a spring of it ends among these particles.
-    pub(super) fn reaches(&self, particles: &Range<usize>) -> bool {
+    pub(crate) fn reaches(&self, particles: &Range<usize>) -> bool {
         let end = self.first + self.rest_lengths.len();
         let (first, end_of_second) = (self.first + self.offset, end + self.offset);
         (self.first < particles.end && particles.start < end)
@@ -35,33 +35,33 @@ impl Diagonal {
 }
 
 /// Gathered particles that are computed side by side.
-pub(super) const GATHERED: usize = 8;
+pub(crate) const GATHERED: usize = 8;
 
 /// Up to `GATHERED` particles of one chunk; the last stands in for those that lack.
 #[derive(Clone, Debug)]
 pub(crate) struct Gather {
-    pub(super) particles: [u32; GATHERED],
-    pub(super) count: usize,
-    pub(super) slots: Range<usize>,
-    pub(super) law: Law,
+    pub(crate) particles: [u32; GATHERED],
+    pub(crate) count: usize,
+    pub(crate) slots: Range<usize>,
+    pub(crate) law: Law,
 }
 
 /// One spring of each gathered particle; one that has no more is joined to itself by no spring.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GatherSlot {
-    pub(super) neighbors: [u32; GATHERED],
-    pub(super) stiffness: [f64; GATHERED],
-    pub(super) damping: [f64; GATHERED],
-    pub(super) rest_lengths: [f64; GATHERED],
+    pub(crate) neighbors: [u32; GATHERED],
+    pub(crate) stiffness: [f64; GATHERED],
+    pub(crate) damping: [f64; GATHERED],
+    pub(crate) rest_lengths: [f64; GATHERED],
 }
 
 /// All the springs of a simulation as the kernel reads them.
 #[derive(Debug, Default)]
 pub(crate) struct Layout {
-    pub(super) diagonals: Vec<Diagonal>,
-    pub(super) gathers: Vec<Gather>,
-    pub(super) gather_slots: Vec<GatherSlot>,
-    pub(super) gathers_of_chunk: Vec<Range<usize>>,
+    pub(crate) diagonals: Vec<Diagonal>,
+    pub(crate) gathers: Vec<Gather>,
+    pub(crate) gather_slots: Vec<GatherSlot>,
+    pub(crate) gathers_of_chunk: Vec<Range<usize>>,
 }
 
 /// A spring as one of its ends sees it.

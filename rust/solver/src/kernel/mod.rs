@@ -17,7 +17,7 @@ mod layout;
 mod tests;
 mod window;
 
-pub(crate) use layout::Layout;
+pub(crate) use layout::{Diagonal, GATHERED, GatherSlot, Layout};
 pub(crate) use window::Windows;
 
 use pulp::Simd;

@@ -39,6 +39,14 @@ impl Limit {
         }
     }
 
+    /// Moves ends that are too far apart after an implicit step, which has already held them as well as it can.
+    pub(crate) fn hold(&mut self, state: &mut State, inverse_masses: &[f64], h: f64) {
+        match self {
+            Self::Provot(limit) => limit.apply(state, inverse_masses, h),
+            Self::Project(limit) => limit.hold(state, inverse_masses),
+        }
+    }
+
     /// Moves ends that are too far apart after a step of h seconds; `is_last` marks the last step of a frame, whose
     /// result is seen.
     pub(crate) fn apply(

@@ -124,6 +124,14 @@ impl Project {
         self.now.clear();
     }
 
+    /// Projects without the sweeps of explicit steps.
+    pub(crate) fn hold(&mut self, state: &mut State, inverse_masses: &[f64]) {
+        if self.find_too_long(state) {
+            self.project(state, inverse_masses);
+            self.now.clear();
+        }
+    }
+
     /// Moves the ends of one edge, and their velocities, by inverse masses.
     fn correct(&mut self, rank: usize, state: &mut State, inverse_masses: &[f64], h: f64) {
         let edge = self.edges[rank];

@@ -1,0 +1,184 @@
+//! Edges at their allowed length: a tension that holds them there, part of the implicit step.
+//!
+//! An edge longer than `(1 + rate) L0` pulls with a tension of its own beside its spring's,
+//!
+//! ```text
+//! T = max(0, T0 + kappa (l - (1 + rate) L0))
+//! ```
+//!
+//! where T0 is what it was after the last iteration: the multiplier of an augmented Lagrangian. It grows from step to
+//! step until the edge is held, and goes to 0 by itself where the load does. What it leaves the limiter takes away: a
+//! few percent instead of the tens that soft springs stretch beside a pin. Only the limiter `project` uses it.
+//!
+//! Source: Hestenes 1969 and Powell 1969 for the multipliers.
+
+use rayon::prelude::*;
+
+use super::hessian::Product;
+use crate::cloth::Cloth;
+use crate::linear::{Field, Operator};
+use crate::material::{Limiter, SpringKind};
+use crate::state::Coordinates;
+use crate::system::System;
+
+/// kappa by the stiffness of the edge's spring. With 2, strain beyond the limit falls to a third from one step to the
+/// next; with 5, Newton iterations begin to overshoot.
+const KAPPA: f64 = 2.0;
+
+/// Tension never exceeds that of kappa at so much strain, and so many times the cloth's weight: it would grow for ever
+/// where pins alone force more strain than is allowed.
+const MOST_STRAIN: f64 = 8.0;
+const MOST_WEIGHTS: f64 = 20.0;
+
+/// Edges that one task looks at.
+const CHUNK: usize = 4096;
+
+#[derive(Clone, Copy, Debug)]
+struct Edge {
+    ends: [u32; 2],
+    /// (m)
+    allowed: f64,
+    /// (N/m)
+    kappa: f64,
+    /// Largest tension (N).
+    most: f64,
+}
+
+/// An edge that pulls, frozen at one state.
+#[derive(Clone, Copy, Debug)]
+struct Pulling {
+    edge: u32,
+    ends: [u32; 2],
+    /// (N)
+    tension: f64,
+    normal: [f64; 3],
+    /// `kappa - T/l` and `T/l` (N/m).
+    along: f32,
+    across: f32,
+    is_free: [bool; 2],
+}
+
+/// The edges that may become taut.
+#[derive(Debug)]
+pub(super) struct Taut {
+    edges: Vec<Edge>,
+    /// Present tension of each edge.
+    tensions: Vec<f64>,
+    pulling: Vec<Pulling>,
+}
+
+impl Taut {
+    pub(super) fn new(cloths: &[Cloth], gravity: f64) -> Self {
+        let (mut edges, mut base) = (Vec::new(), 0);
+        for cloth in cloths {
+            let allowed = 1.0 + cloth.material.deformation_rate;
+            let is_limited = cloth.material.limiter == Limiter::Project;
+            let most_by_weight = MOST_WEIGHTS * gravity * cloth.masses.iter().sum::<f64>();
+            let stretch = cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Stretch);
+            edges.extend(stretch.filter(|_| is_limited).map(|spring| Edge {
+                ends: spring.ends.map(|end| base + end),
+                allowed: allowed * spring.rest_length,
+                kappa: KAPPA * spring.stiffness,
+                most: MOST_STRAIN * KAPPA * spring.stiffness * spring.rest_length + most_by_weight,
+            }));
+            base += cloth.positions.len() as u32;
+        }
+        let tensions = vec![0.0; edges.len()];
+        Self { edges, tensions, pulling: Vec::new() }
+    }
+
+    pub(super) fn edge_count(&self) -> usize {
+        self.edges.len()
+    }
+
+    /// Finds the edges that pull at these positions, given their tensions (N) after the last iteration.
+    pub(super) fn freeze(&mut self, positions: &Coordinates, last: &[f64], system: &System) {
+        let chunks = self.tensions.par_chunks_mut(CHUNK).zip(self.edges.par_chunks(CHUNK));
+        chunks.zip(last.par_chunks(CHUNK)).for_each(|((tensions, edges), last)| {
+            for ((tension, edge), last) in tensions.iter_mut().zip(edges).zip(last) {
+                let [a, b] = edge.ends;
+                let squared = positions.distance_squared(a, b);
+                *tension = if *last == 0.0 && squared <= edge.allowed * edge.allowed {
+                    0.0
+                } else {
+                    (last + edge.kappa * (squared.sqrt() - edge.allowed)).clamp(0.0, edge.most)
+                };
+            }
+        });
+        self.pulling.clear();
+        for (number, (&tension, edge)) in self.tensions.iter().zip(&self.edges).enumerate() {
+            let is_free = edge.ends.map(|end| !system.is_pinned(end as usize));
+            if tension == 0.0 || is_free == [false; 2] {
+                continue;
+            }
+            let [a, b] = edge.ends.map(|end| end as usize);
+            let span = positions.0.each_ref().map(|axis| axis[a] - axis[b]);
+            let length = positions.distance_squared(edge.ends[0], edge.ends[1]).sqrt();
+            self.pulling.push(Pulling {
+                edge: number as u32,
+                ends: edge.ends,
+                tension,
+                normal: span.map(|d| d / length),
+                along: (edge.kappa - tension / length).max(0.0) as f32,
+                across: (tension / length) as f32,
+                is_free,
+            });
+        }
+    }
+
+    /// Adds the tensions to the forces (N).
+    pub(super) fn add_forces(&self, forces: &mut Coordinates) {
+        for pulling in &self.pulling {
+            let [a, b] = pulling.ends.map(|end| end as usize);
+            for (force, n) in forces.0.iter_mut().zip(pulling.normal) {
+                let pull = pulling.tension * n;
+                if pulling.is_free[0] {
+                    force[a] -= pull;
+                }
+                if pulling.is_free[1] {
+                    force[b] += pull;
+                }
+            }
+        }
+    }
+
+    /// Takes the tensions that the linear model has after a move (m).
+    pub(super) fn follow(&self, moves: &Field, tensions: &mut [f64]) {
+        tensions.fill(0.0);
+        for pulling in &self.pulling {
+            let [a, b] = pulling.ends.map(|end| end as usize);
+            let spans = moves.0.iter().map(|axis| f64::from(axis[a] - axis[b]));
+            let along: f64 = spans.zip(pulling.normal).map(|(d, n)| d * n).sum();
+            let edge = &self.edges[pulling.edge as usize];
+            let tension = pulling.tension + edge.kappa * along;
+            tensions[pulling.edge as usize] = tension.clamp(0.0, edge.most);
+        }
+    }
+}
+
+/// The Hessian of the springs with that of the tensions.
+pub(super) struct WithTaut<'a> {
+    pub(super) springs: Product<'a>,
+    pub(super) taut: &'a Taut,
+}
+
+impl Operator for WithTaut<'_> {
+    fn apply(&self, p: &Field, out: &mut Field) {
+        self.springs.apply(p, out);
+        for pulling in &self.taut.pulling {
+            let [a, b] = pulling.ends.map(|end| end as usize);
+            let d: [f32; 3] = std::array::from_fn(|axis| p.0[axis][a] - p.0[axis][b]);
+            let n = pulling.normal.map(|n| n as f32);
+            let along = pulling.along * (n[0] * d[0] + n[1] * d[1] + n[2] * d[2]);
+            for (axis, out) in out.0.iter_mut().enumerate() {
+                let force = along * n[axis] + pulling.across * d[axis];
+                if pulling.is_free[0] {
+                    out[a] += force;
+                }
+                if pulling.is_free[1] {
+                    out[b] -= force;
+                }
+            }
+        }
+    }
+}

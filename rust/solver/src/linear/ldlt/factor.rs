@@ -1,0 +1,261 @@
+//! The numbers of the factor, front by front, halves in parallel.
+
+use pulp::{Arch, Simd, WithSimd};
+
+use super::super::laplacian::{Graph, Laplacian};
+use super::dense::panels;
+use super::symbolic::{Front, Symbolic};
+
+/// `[S⁻¹; W]` of every front.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Factor {
+    pub(super) numbers: Vec<f32>,
+}
+
+impl Factor {
+    pub(super) fn new(symbolic: &Symbolic, graph: &Graph, matrix: &Laplacian, arch: Arch) -> Self {
+        let mut numbers = vec![0.0; symbolic.number_count];
+        if !symbolic.fronts.is_empty() {
+            let eliminator = Eliminator { symbolic, graph, matrix, arch };
+            eliminator.eliminate(symbolic.fronts.len() - 1, &mut numbers);
+        }
+        Self { numbers }
+    }
+}
+
+/// A square matrix whose lower triangle counts, column by column.
+#[derive(Default)]
+struct Square {
+    size: usize,
+    numbers: Vec<f64>,
+}
+
+impl Square {
+    fn zeros(size: usize) -> Self {
+        Self { size, numbers: vec![0.0; size * size] }
+    }
+
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        let (row, column) = (row.max(column), row.min(column));
+        self.numbers[column * self.size + row] += value;
+    }
+}
+
+/// Subtrees of fewer fronts are one task.
+const TASK: usize = 24;
+
+struct Eliminator<'a> {
+    symbolic: &'a Symbolic,
+    graph: &'a Graph,
+    matrix: &'a Laplacian,
+    arch: Arch,
+}
+
+impl Eliminator<'_> {
+    /// Eliminates a subtree into its part of the numbers and returns what remains for the rows below its root.
+    fn eliminate(&self, root: usize, numbers: &mut [f32]) -> Square {
+        let front = &self.symbolic.fronts[root];
+        let mut square = Square::zeros(front.count());
+        let own_numbers = front.number_count();
+        let (below, own) = numbers.split_at_mut(numbers.len() - own_numbers);
+        if let Some([lower, upper]) = front.block.children {
+            let [lower, upper] = [lower as usize, upper as usize];
+            let upper_front = &self.symbolic.fronts[upper];
+            let first_of_upper = upper_front.block.first_block as usize;
+            let base = self.symbolic.fronts[front.block.first_block as usize].numbers;
+            let middle = self.symbolic.fronts[first_of_upper].numbers - base;
+            let (lower_numbers, upper_numbers) = below.split_at_mut(middle);
+            let remainders = if root - (front.block.first_block as usize) < TASK {
+                [self.eliminate(lower, lower_numbers), self.eliminate(upper, upper_numbers)]
+            } else {
+                let (lower, upper) = rayon::join(
+                    || self.eliminate(lower, lower_numbers),
+                    || self.eliminate(upper, upper_numbers),
+                );
+                [lower, upper]
+            };
+            for (child, remainder) in [lower, upper].into_iter().zip(&remainders) {
+                extend_add(&mut square, &self.symbolic.fronts[child], remainder);
+            }
+        }
+        self.assemble(front, &mut square);
+        let (count, own_count) = (front.count(), front.own_count());
+        let columns = self.arch.dispatch(Elimination { square: &mut square, own: own_count });
+        store(&columns, count, own_count, own);
+        remainder(&square, own_count)
+    }
+
+    /// Adds the matrix's own entries.
+    fn assemble(&self, front: &Front, square: &mut Square) {
+        let own = &front.block.own;
+        for (column, &particle) in
+            self.symbolic.order[own.start as usize..own.end as usize].iter().enumerate()
+        {
+            square.add(column, column, self.matrix.diagonal[particle as usize]);
+            for (neighbor, weight) in self.matrix.row(self.graph, particle) {
+                let place = self.symbolic.places[neighbor as usize];
+                if place < own.start + column as u32 {
+                    continue;
+                }
+                let row = if place < own.end {
+                    (place - own.start) as usize
+                } else {
+                    own.len() + front.rows.partition_point(|&row| row < place)
+                };
+                square.add(row, column, -weight);
+            }
+        }
+    }
+}
+
+/// Adds what a child leaves to its parent's front.
+fn extend_add(square: &mut Square, child: &Front, remainder: &Square) {
+    for (i, column_run) in child.runs.iter().enumerate() {
+        for offset in 0..column_run.count {
+            let from_column = (column_run.from + offset) as usize;
+            let to_column = (column_run.to + offset) as usize;
+            for run in &child.runs[i..] {
+                let first = from_column.max(run.from as usize);
+                let skipped = first - run.from as usize;
+                let count = (run.count as usize).saturating_sub(skipped);
+                let from = &remainder.numbers[from_column * remainder.size + first..][..count];
+                let start = to_column * square.size + run.to as usize + skipped;
+                for (to, value) in square.numbers[start..][..count].iter_mut().zip(from) {
+                    *to += value;
+                }
+            }
+        }
+    }
+}
+
+/// Eliminates the first columns of a front and returns its `[S⁻¹; W]`, column by column.
+struct Elimination<'a> {
+    square: &'a mut Square,
+    own: usize,
+}
+
+impl WithSimd for Elimination<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Vec<f64> {
+        eliminate_own(self.square, self.own);
+        inverse_and_below(self.square, self.own)
+    }
+}
+
+/// Columns that are taken together.
+const PANEL: usize = 4;
+
+/// Replaces the first `own` columns by their Cholesky factor L and subtracts L Lᵀ from the rest.
+#[inline(always)]
+fn eliminate_own(square: &mut Square, own: usize) {
+    let size = square.size;
+    for first in (0..own).step_by(PANEL) {
+        let width = PANEL.min(own - first);
+        let (done, rest) = square.numbers.split_at_mut((first + width) * size);
+        let panel = &mut done[first * size..];
+        for j in 0..width {
+            let (before, column) = panel.split_at_mut(j * size);
+            let column = &mut column[..size];
+            for i in 0..j {
+                let factor = before[i * size + first + j];
+                subtract(&mut column[first + j..], &before[i * size + first + j..(i + 1) * size], factor);
+            }
+            let pivot = column[first + j].sqrt();
+            column[first + j] = pivot;
+            for number in &mut column[first + j + 1..] {
+                *number /= pivot;
+            }
+        }
+        for (j, column) in rest.chunks_exact_mut(size).enumerate() {
+            let j = first + width + j;
+            let column = &mut column[j..];
+            if width == PANEL {
+                let sources = std::array::from_fn(|i| &panel[i * size + j..(i + 1) * size]);
+                subtract_four(column, sources, sources.map(|source| source[0]));
+            } else {
+                for i in 0..width {
+                    let source = &panel[i * size + j..(i + 1) * size];
+                    subtract(column, source, source[0]);
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn subtract(column: &mut [f64], source: &[f64], factor: f64) {
+    for (to, from) in column.iter_mut().zip(source) {
+        *to -= factor * from;
+    }
+}
+
+#[inline(always)]
+fn subtract_four(column: &mut [f64], sources: [&[f64]; 4], [p, q, r, s]: [f64; 4]) {
+    let [a, b, c, d] = sources.map(|source| &source[..column.len()]);
+    for (i, to) in column.iter_mut().enumerate() {
+        *to -= (p * a[i] + q * b[i]) + (r * c[i] + s * d[i]);
+    }
+}
+
+/// What is left for the rows below.
+fn remainder(square: &Square, own: usize) -> Square {
+    let size = square.size - own;
+    let columns = square.numbers.chunks_exact(square.size.max(1)).skip(own);
+    Square { size, numbers: columns.flat_map(|column| &column[own..]).copied().collect() }
+}
+
+/// `[S⁻¹; W] = [L⁻ᵀ; B] L⁻¹`, column by column, from the factor L of S and the rows `B = A L⁻ᵀ` below it.
+#[inline(always)]
+fn inverse_and_below(square: &Square, own: usize) -> Vec<f64> {
+    let size = square.size;
+    let lower = |row: usize, column: usize| square.numbers[column * size + row];
+    let mut numbers = vec![0.0; own * size];
+    for j in 0..own {
+        let (before, column) = numbers.split_at_mut(j * size);
+        column[j] = 1.0;
+        for i in 0..j {
+            subtract(&mut column[..=i], &before[i * size..=i * size + i], lower(j, i));
+        }
+        let pivot = lower(j, j);
+        for number in &mut column[..=j] {
+            *number /= pivot;
+        }
+        column[own..size].copy_from_slice(&square.numbers[j * size + own..(j + 1) * size]);
+    }
+    for j in (0..own).rev() {
+        let (before, after) = numbers.split_at_mut((j + 1) * size);
+        let column = &mut before[j * size..];
+        let mut later = (j + 1..own).zip(after.chunks_exact(size));
+        while let Some((i, a)) = later.next() {
+            let next: [_; 3] = std::array::from_fn(|_| later.next());
+            if let [Some((_, b)), Some((_, c)), Some((_, d))] = next {
+                let factors = std::array::from_fn(|k| lower(i + k, j));
+                subtract_four(column, [a, b, c, d], factors);
+            } else {
+                subtract(column, a, lower(i, j));
+                for (i, source) in next.into_iter().flatten() {
+                    subtract(column, source, lower(i, j));
+                }
+            }
+        }
+        let pivot = lower(j, j);
+        for number in column {
+            *number /= pivot;
+        }
+    }
+    numbers
+}
+
+/// Writes columns of f64 as panels of f32.
+fn store(columns: &[f64], rows: usize, own: usize, out: &mut [f32]) {
+    for (first, height, range) in panels(rows, own) {
+        for (j, out) in out[range].chunks_exact_mut(height).enumerate() {
+            let column = &columns[j * rows + first..(j + 1) * rows];
+            for (out, number) in out.iter_mut().zip(column) {
+                *out = *number as f32;
+            }
+        }
+    }
+}

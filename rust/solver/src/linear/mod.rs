@@ -1,0 +1,12 @@
+//! Linear algebra of the implicit step: the constant matrix, its inverse, and conjugate gradients.
+
+mod conjugate_gradient;
+mod dissection;
+mod field;
+mod laplacian;
+mod ldlt;
+
+pub(crate) use conjugate_gradient::{ConjugateGradient, Inverse, Operator, Stop};
+pub(crate) use field::Field;
+pub(crate) use laplacian::{Graph, Laplacian};
+pub(crate) use ldlt::Ldlt;

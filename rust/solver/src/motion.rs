@@ -1,0 +1,72 @@
+//! What moves the particles by a step: a rule that needs nothing but the state, or one that remembers.
+
+use crate::cloth::Cloth;
+use crate::implicit::{Implicit, Memory, Rule};
+use crate::integrator::{Integrator, Scratch, explicit};
+use crate::settings::IntegratorKind;
+use crate::state::State;
+use crate::system::System;
+
+/// An integrator with its memory.
+pub(crate) enum Motion {
+    Explicit(&'static dyn Integrator, Box<Scratch>),
+    Implicit(Box<Implicit>),
+}
+
+impl Motion {
+    pub(crate) fn new(
+        kind: IntegratorKind,
+        cloths: &[Cloth],
+        system: &System,
+        state: &State,
+    ) -> Self {
+        if let Some(rule) = explicit(kind) {
+            return Self::Explicit(rule, Box::new(Scratch::new(state)));
+        }
+        let rule = if kind == IntegratorKind::Bdf2 { Rule::Bdf2 } else { Rule::ImplicitEuler };
+        Self::Implicit(Box::new(Implicit::new(rule, cloths, system, state)))
+    }
+
+    /// What the next step depends on besides the state.
+    pub(crate) fn memory(&self) -> Option<&Memory> {
+        match self {
+            Self::Explicit(..) => None,
+            Self::Implicit(implicit) => Some(&implicit.memory),
+        }
+    }
+
+    /// The same, to change it.
+    pub(crate) fn memory_mut(&mut self) -> Option<&mut Memory> {
+        match self {
+            Self::Explicit(..) => None,
+            Self::Implicit(implicit) => Some(&mut implicit.memory),
+        }
+    }
+
+    /// Follows a change of which particles are pinned.
+    pub(crate) fn follow_pins(&mut self) {
+        if let Self::Implicit(implicit) = self {
+            implicit.follow_pins();
+        }
+    }
+
+    pub(crate) fn is_implicit(&self) -> bool {
+        matches!(self, Self::Implicit(_))
+    }
+
+    /// Iterations of the linear solver since they were last taken.
+    pub(crate) fn take_iterations(&mut self) -> u32 {
+        match self {
+            Self::Explicit(..) => 0,
+            Self::Implicit(implicit) => std::mem::take(&mut implicit.iterations),
+        }
+    }
+
+    /// Moves `state` by one step of h seconds.
+    pub(crate) fn step(&mut self, system: &System, state: &mut State, h: f64) {
+        match self {
+            Self::Explicit(rule, scratch) => rule.step(system, state, scratch, h),
+            Self::Implicit(implicit) => implicit.step(system, state, h),
+        }
+    }
+}

@@ -35,7 +35,7 @@ use crate::state::State;
 pub(crate) const CHUNK: usize = 2048;
 
 /// Particles whose springs are computed at a time: few enough for all that these touch to stay in the nearest cache.
-pub(crate) const BLOCK: usize = 256;
+pub(crate) const BLOCK: usize = 512;
 
 /// A vector for each particle of one chunk, an array an axis.
 pub(crate) type ChunkVectors = [[f64; PLACES]; 3];

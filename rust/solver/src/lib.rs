@@ -17,6 +17,7 @@ mod cloth;
 mod digest;
 mod error;
 mod force;
+mod grouped;
 mod integrator;
 mod kernel;
 mod law;

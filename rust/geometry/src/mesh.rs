@@ -134,7 +134,7 @@ impl Mesh {
     }
 
     /// Every face's vertices.
-    pub fn faces(&self) -> impl Iterator<Item = &[u32]> {
+    pub fn faces(&self) -> impl Iterator<Item = &[u32]> + Clone {
         self.face_starts.windows(2).map(|pair| &self.corners[pair[0] as usize..pair[1] as usize])
     }
 

@@ -16,7 +16,7 @@ use crate::integrator::explicit;
 use crate::law::spring::Law;
 use crate::limit::Limit;
 use crate::material::SpringKind;
-use crate::motion::Motion;
+use crate::method::Method;
 use crate::perturbation::perturb;
 use crate::pins::Pins;
 use crate::settings::{MOST_SUBSTEPS, Settings, StepSize};
@@ -43,7 +43,7 @@ pub struct Simulation {
     /// The state at the start of a frame, to fall back on.
     good: State,
     good_memory: Option<Memory>,
-    motion: Motion,
+    method: Method,
     frame: i32,
     /// Steps that led to the present frame.
     substeps_taken: u32,
@@ -89,7 +89,7 @@ impl Simulation {
         let system = System::new(&cloths, winds, settings.gravity);
         let mut simulation = Self {
             pins: Pins::new(pinned, &state),
-            motion: Motion::new(settings.integrator, &cloths, &system, &state),
+            method: Method::new(settings.integrator, &cloths, &system, &state),
             system,
             spectrum: Spectrum::default(),
             limits: Vec::new(),
@@ -179,7 +179,7 @@ impl Simulation {
             self.state.position.set(base + vertex, position);
             self.state.velocity.set(base + vertex, &Vector::zeros());
         }
-        if let Some(memory) = self.motion.memory_mut() {
+        if let Some(memory) = self.method.memory_mut() {
             memory.clear();
         }
         let state = &self.state;
@@ -208,14 +208,14 @@ impl Simulation {
         }
         self.frame += 1;
         self.substeps_taken = substeps;
-        self.iterations_taken = self.motion.take_iterations();
+        self.iterations_taken = self.method.take_iterations();
         Ok(self.certificate())
     }
 
     /// Keeps the state, to fall back on it.
     fn keep(&mut self) {
         self.good.copy_from(&self.state);
-        if let Some(memory) = self.motion.memory() {
+        if let Some(memory) = self.method.memory() {
             self.good_memory.get_or_insert_with(|| memory.clone()).copy_from(memory);
         }
     }
@@ -223,7 +223,7 @@ impl Simulation {
     /// Returns to the state that was kept.
     fn fall_back(&mut self) {
         self.state.copy_from(&self.good);
-        if let (Some(memory), Some(good)) = (self.motion.memory_mut(), &self.good_memory) {
+        if let (Some(memory), Some(good)) = (self.method.memory_mut(), &self.good_memory) {
             memory.copy_from(good);
         }
     }
@@ -237,11 +237,11 @@ impl Simulation {
             perturb(&mut self.state, &self.cloths, self.settings.perturbation);
         }
         self.pins.start(&mut self.state, duration);
-        let Self { system, pins, limits, state, motion, threads, .. } = self;
+        let Self { system, pins, limits, state, method, threads, .. } = self;
         threads.install(|| {
             (1..=substeps).find_map(|substep| {
                 let is_last = substep == substeps;
-                Step { system, pins, h, is_last }.run(state, motion, limits);
+                Step { system, pins, h, is_last }.run(state, method, limits);
                 if watches || is_last { first_lost(state) } else { None }
             })
         })
@@ -313,7 +313,7 @@ impl Simulation {
             frame: self.frame,
             substeps: self.substeps_taken,
             state: self.state.clone(),
-            memory: self.motion.memory().cloned(),
+            memory: self.method.memory().cloned(),
             is_pinned: (0..count).map(|particle| self.system.is_pinned(particle)).collect(),
         };
         checkpoint.to_bytes()
@@ -330,7 +330,7 @@ impl Simulation {
                 "is of another scene or other settings; accepted: the one that it was made from",
             ));
         }
-        if let (Some(memory), Some(restored)) = (self.motion.memory_mut(), checkpoint.memory) {
+        if let (Some(memory), Some(restored)) = (self.method.memory_mut(), checkpoint.memory) {
             *memory = restored;
         }
         self.state = checkpoint.state;
@@ -365,7 +365,7 @@ impl Simulation {
         for particle in 0..self.state.len() {
             self.system.set_pinned(particle, false);
         }
-        self.motion.follow_pins();
+        self.method.follow_pins();
         for particle in self.pins.particles() {
             self.system.set_pinned(particle as usize, true);
         }

@@ -66,11 +66,11 @@ impl Spectrum {
         });
         let ratio = ratios.fold(f64::INFINITY, f64::min);
         let least_air = viscous.clone().fold(f64::INFINITY, f64::min);
+        let largest = |edges: &[WeightedEdge]| largest_eigenvalue(edges, &system.inverse_masses);
+        let (w_squared, damping) = rayon::join(|| largest(&stiffness), || largest(&damping));
         Self {
-            w_squared: largest_eigenvalue(&stiffness, &system.inverse_masses),
-            damping: largest_eigenvalue(&damping, &system.inverse_masses)
-                + viscous.fold(0.0, f64::max)
-                + wind,
+            w_squared,
+            damping: damping + viscous.fold(0.0, f64::max) + wind,
             damping_by_stiffness: if ratio.is_finite() { ratio } else { 0.0 },
             air_damping: if least_air.is_finite() { least_air } else { 0.0 },
         }
@@ -183,9 +183,12 @@ fn power_iteration(edges: &[WeightedEdge], diagonal: &[f64], inverse_masses: &[f
     let roots: Vec<f64> = inverse_masses.iter().map(|w| w.sqrt()).collect();
     let mut vector: Vec<f64> = (0..roots.len() as u64).map(scattered).collect();
     let mut eigenvalue = 0.0;
+    let [mut scaled, mut product] = [vec![0.0; roots.len()], vec![0.0; roots.len()]];
     for _ in 0..ROUNDS {
-        let scaled: Vec<f64> = vector.iter().zip(&roots).map(|(x, root)| x * root).collect();
-        let mut product: Vec<f64> = scaled.iter().zip(diagonal).map(|(x, sum)| x * sum).collect();
+        for (i, (scaled, product)) in scaled.iter_mut().zip(&mut product).enumerate() {
+            *scaled = vector[i] * roots[i];
+            *product = *scaled * diagonal[i];
+        }
         for &([a, b], weight) in edges {
             product[a as usize] -= weight * scaled[b as usize];
             product[b as usize] -= weight * scaled[a as usize];
@@ -199,7 +202,9 @@ fn power_iteration(edges: &[WeightedEdge], diagonal: &[f64], inverse_masses: &[f
         }
         let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
         eigenvalue = f64::max(eigenvalue, norm / length);
-        vector = product.into_iter().map(|x| x / norm).collect();
+        for (x, product) in vector.iter_mut().zip(&product) {
+            *x = product / norm;
+        }
     }
     eigenvalue
 }

@@ -1,7 +1,7 @@
 //! One substep: a table of contents.
 
 use crate::limit::Limit;
-use crate::motion::Motion;
+use crate::method::Method;
 use crate::pins::Pins;
 use crate::state::State;
 use crate::system::System;
@@ -18,13 +18,13 @@ pub(crate) struct Step<'a> {
 
 impl Step<'_> {
     /// Moves the state by one substep.
-    pub(crate) fn run(&self, state: &mut State, motion: &mut Motion, limits: &mut [Limit]) {
-        motion.step(self.system, state, self.h);
+    pub(crate) fn run(&self, state: &mut State, method: &mut Method, limits: &mut [Limit]) {
+        method.step(self.system, state, self.h);
         if self.is_last {
             self.pins.arrive(state);
         }
         for limit in limits {
-            if motion.is_implicit() {
+            if method.is_implicit() {
                 limit.hold(state, &self.system.inverse_masses, self.h);
             } else {
                 limit.apply(state, &self.system.inverse_masses, self.h, self.is_last);

@@ -5,7 +5,7 @@
 //! a_i = 0                                                           for one that is pinned
 //! ```
 
-use std::cell::Cell;
+use std::ops::Range;
 
 use boucle_geometry::Vector;
 use pulp::{Arch, Simd, WithSimd};
@@ -13,8 +13,8 @@ use rayon::prelude::*;
 
 use crate::cloth::Cloth;
 use crate::force::{Air, AirScratch, Wind};
-use crate::kernel::{CHUNK, ChunkVectors, Layout, Windows, add_spring_forces};
-use crate::state::{Coordinates, State};
+use crate::kernel::{BLOCK, CHUNK, Layout, Sums, add_from_inside, add_from_outside};
+use crate::state::State;
 
 /// Everything that acts on the particles; only pins change.
 #[derive(Debug)]
@@ -31,26 +31,29 @@ pub(crate) struct System {
     arch: Arch,
 }
 
-/// One axis of one chunk, as an integrator's update sees it. All slices run over the same particles.
-pub(crate) struct Axis<'a> {
-    /// Which axis: 0, 1, 2.
-    pub(crate) index: usize,
-    /// First particle of the chunk.
-    pub(crate) first: usize,
-    /// Acceleration (m/s²) at the state that was evaluated.
-    pub(crate) acceleration: &'a [f64],
-    /// Positions (m) to fill.
-    pub(crate) position: &'a mut [f64],
-    /// Velocities (m/s) to fill.
-    pub(crate) velocity: &'a mut [f64],
+/// How particles move by their accelerations a: what every integrator is made of.
+///
+/// ```text
+/// v' = v + kick a        x' = x + drift r
+/// ```
+#[derive(Clone, Copy)]
+pub(crate) struct Motion<'a> {
+    /// x and v: where particles move from.
+    pub(crate) from: &'a State,
+    /// Seconds.
+    pub(crate) kick: f64,
+    /// Seconds.
+    pub(crate) drift: f64,
+    pub(crate) rate: Rate,
 }
 
-impl Axis<'_> {
-    /// The same particles' and axis' part of other coordinates.
-    #[inline(always)]
-    pub(crate) fn of<'a>(&self, coordinates: &'a Coordinates) -> &'a [f64] {
-        &coordinates.0[self.index][self.first..][..self.acceleration.len()]
-    }
+/// The velocity r by which positions move.
+#[derive(Clone, Copy)]
+pub(crate) enum Rate {
+    /// That of the state whose accelerations are evaluated.
+    Evaluated,
+    /// v'
+    New,
 }
 
 impl System {
@@ -82,13 +85,13 @@ impl System {
         self.inverse_masses[particle] = if is_pinned { 0.0 } else { 1.0 / self.masses[particle] };
     }
 
-    /// Evaluates the accelerations at `at` and lets `update` fill `out`, chunk by chunk and axis by axis.
+    /// Evaluates the accelerations at `at` and fills `out` with where they move the particles.
     pub(crate) fn advance(
         &self,
         at: &State,
         out: &mut State,
         air: &mut AirScratch,
-        update: impl Fn(Axis<'_>) + Sync,
+        motion: Motion<'_>,
     ) {
         if !self.air.is_still() {
             self.air.observe(at, air);
@@ -98,85 +101,75 @@ impl System {
         let [u, v, w] = out.velocity.0.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));
         let chunks = (x, y, z, u, v, w).into_par_iter().enumerate();
         chunks.for_each(|(chunk, (x, y, z, u, v, w))| {
-            let mut windows = WINDOWS.take();
             let out = [(x, u), (y, v), (z, w)];
-            let windows_now = &mut windows;
-            self.arch.dispatch(Task {
-                system: self,
-                chunk,
-                at,
-                air,
-                out,
-                windows: windows_now,
-                update: &update,
-            });
-            WINDOWS.set(windows);
+            self.arch.dispatch(Task { system: self, chunk, at, air, motion, out });
         });
     }
-
-    #[inline(always)]
-    fn accelerations<S: Simd>(
-        &self,
-        simd: S,
-        chunk: usize,
-        at: &State,
-        air: &AirScratch,
-        windows: &mut Windows,
-        out: &mut ChunkVectors,
-    ) {
-        add_spring_forces(simd, &self.layout, chunk, at, windows, out);
-        if !self.air.is_still() {
-            self.air.add_forces(chunk, at, air, out);
-        }
-        let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(self.masses.len());
-        let inverse_masses = &self.inverse_masses[range.clone()];
-        let damping = &self.air_damping[range.clone()];
-        for (axis, out) in out.iter_mut().enumerate() {
-            let velocity = &at.velocity.0[axis][range.clone()];
-            let gravity = self.gravity[axis];
-            for i in 0..velocity.len() {
-                let free_fall = if inverse_masses[i] > 0.0 { gravity } else { 0.0 };
-                out[i] = free_fall + inverse_masses[i] * (out[i] - damping[i] * velocity[i]);
-            }
-        }
-    }
-}
-
-thread_local! {
-    static WINDOWS: Cell<Windows> = Cell::default();
 }
 
 /// What a thread does at a time: the step of one chunk, compiled once for each set of instructions.
-struct Task<'a, Update> {
+struct Task<'a> {
     system: &'a System,
     chunk: usize,
     at: &'a State,
     air: &'a AirScratch,
+    motion: Motion<'a>,
     /// Positions and velocities to fill, axis by axis.
     out: [(&'a mut [f64], &'a mut [f64]); 3],
-    windows: &'a mut Windows,
-    update: &'a Update,
 }
 
-impl<Update: Fn(Axis<'_>)> WithSimd for Task<'_, Update> {
+impl WithSimd for Task<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { system, chunk, at, air, out, windows, update } = self;
-        let mut acceleration: ChunkVectors = [[0.0; CHUNK]; 3];
-        system.accelerations(simd, chunk, at, air, windows, &mut acceleration);
-        for (axis, (position, velocity)) in out.into_iter().enumerate() {
-            let count = position.len();
-            let acceleration = &acceleration[axis][..count];
-            let first = chunk * CHUNK;
-            update(Axis {
-                index: axis,
-                first,
-                acceleration,
-                position,
-                velocity: &mut velocity[..count],
-            });
+    fn with_simd<S: Simd>(mut self, simd: S) {
+        let Self { system, chunk, at, .. } = self;
+        let mut sums = Sums::zeros();
+        if !system.air.is_still() {
+            system.air.add_forces(chunk, at, self.air, &mut sums.arriving);
+        }
+        add_from_outside(simd, &system.layout, chunk, at, &mut sums);
+        let end = ((chunk + 1) * CHUNK).min(at.len());
+        for start in (chunk * CHUNK..end).step_by(BLOCK) {
+            let block = start..end.min(start + BLOCK);
+            add_from_inside(simd, &system.layout, chunk, &block, at, &mut sums);
+            self.advance(&block, &sums);
+        }
+    }
+}
+
+impl Task<'_> {
+    /// Moves the particles of a block, whose sums are whole.
+    #[inline(always)]
+    fn advance(&mut self, block: &Range<usize>, sums: &Sums) {
+        match self.motion.rate {
+            Rate::Evaluated => self.advance_by(block, sums, |evaluated, _| evaluated),
+            Rate::New => self.advance_by(block, sums, |_, new| new),
+        }
+    }
+
+    #[inline(always)]
+    fn advance_by(&mut self, block: &Range<usize>, sums: &Sums, rate: impl Fn(f64, f64) -> f64) {
+        let Self { system, at, motion, .. } = *self;
+        let Motion { from, kick, drift, .. } = motion;
+        let inverse_masses = &system.inverse_masses[block.clone()];
+        let damping = &system.air_damping[block.clone()];
+        let first = self.chunk * CHUNK;
+        let places = block.start - first..block.end - first;
+        for (axis, (position, velocity)) in self.out.iter_mut().enumerate() {
+            let gravity = system.gravity[axis];
+            let [leaving, arriving] =
+                [&sums.leaving, &sums.arriving].map(|sums| &sums[axis][places.clone()]);
+            let [evaluated, x, v] = [&at.velocity, &from.position, &from.velocity]
+                .map(|coordinates| &coordinates.0[axis][block.clone()]);
+            let [position, velocity] = [position, velocity].map(|out| &mut out[places.clone()]);
+            for i in 0..leaving.len() {
+                let force = (arriving[i] - leaving[i]) - damping[i] * evaluated[i];
+                let free_fall = if inverse_masses[i] > 0.0 { gravity } else { 0.0 };
+                let new = v[i] + kick * (free_fall + inverse_masses[i] * force);
+                velocity[i] = new;
+                position[i] = x[i] + drift * rate(evaluated[i], new);
+            }
         }
     }
 }

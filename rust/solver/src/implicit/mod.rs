@@ -31,7 +31,7 @@ use crate::cloth::Cloth;
 use crate::force::AirScratch;
 use crate::linear::{ConjugateGradient, Stop};
 use crate::state::State;
-use crate::system::System;
+use crate::system::{Motion, Rate, System};
 use hessian::Hessian;
 use history::Formula;
 pub(crate) use history::Memory;
@@ -69,8 +69,10 @@ pub(crate) struct Implicit {
     base: State,
     /// The present guess.
     at: State,
-    /// What forces leave at the guess, in the place of positions.
+    /// What forces leave at the guess, in the place of positions, and accelerations in that of velocities.
     residual: State,
+    /// Zeros.
+    still: State,
     air: AirScratch,
     /// Iterations since they were last counted.
     pub(crate) iterations: u32,
@@ -90,6 +92,7 @@ impl Implicit {
             base: State::zeros(count),
             at: State::zeros(count),
             residual: State::zeros(count),
+            still: State::zeros(count),
             air: AirScratch::default(),
             iterations: 0,
         }
@@ -165,19 +168,20 @@ impl Implicit {
 
     /// Takes the residual and the tangents at the present guess.
     fn linearize(&mut self, system: &System, h: f64) {
-        let Self { base, at, residual, air, hessian, taut, gradients, memory, .. } = self;
+        let Self { base, at, residual, still, air, hessian, taut, gradients, memory, .. } = self;
         let by_square = 1.0 / (h * h);
         let System { masses, inverse_masses, .. } = system;
-        system.advance(at, residual, air, |chunk| {
-            let x = chunk.of(&at.position);
-            let target = chunk.of(&base.velocity);
-            let masses = &masses[chunk.first..];
-            let inverse_masses = &inverse_masses[chunk.first..];
-            for (i, a) in chunk.acceleration.iter().enumerate() {
+        let from_rest = Motion { from: still, kick: 1.0, drift: 0.0, rate: Rate::New };
+        system.advance(at, residual, air, from_rest);
+        for axis in 0..3 {
+            let accelerations = residual.velocity.0[axis].iter();
+            let out = residual.position.0[axis].iter_mut().zip(accelerations);
+            let x = at.position.0[axis].iter().zip(&*base.velocity.0[axis]);
+            for (i, ((out, a), (x, target))) in out.zip(x).enumerate() {
                 let mass = if inverse_masses[i] > 0.0 { masses[i] } else { 0.0 };
-                chunk.position[i] = mass * (a - (x[i] - target[i]) * by_square);
+                *out = mass * (a - (x - target) * by_square);
             }
-        });
+        }
         taut.freeze(&at.position, &memory.tensions, system);
         taut.add_forces(&mut residual.position);
         gradients.take_residual(&residual.position);

@@ -8,7 +8,7 @@
 
 use nalgebra::Matrix2;
 
-use super::{Integrator, Scratch, euler_stage, oscillator};
+use super::{Integrator, Scratch, euler, oscillator};
 use crate::state::State;
 use crate::system::System;
 
@@ -16,8 +16,7 @@ pub(super) struct ForwardEuler;
 
 impl Integrator for ForwardEuler {
     fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64) {
-        let old = &*state;
-        euler_stage(system, old, old, &mut scratch.next, &mut scratch.air, h);
+        system.advance(state, &mut scratch.next, &mut scratch.air, euler(state, h));
         std::mem::swap(state, &mut scratch.next);
     }
 

@@ -12,7 +12,7 @@ use nalgebra::Matrix2;
 
 use super::{Integrator, Scratch, drift, kick};
 use crate::state::State;
-use crate::system::System;
+use crate::system::{Motion, Rate, System};
 
 pub(super) struct Leapfrog;
 
@@ -23,22 +23,8 @@ impl Integrator for Leapfrog {
                 *x += 0.5 * h * v;
             }
         }
-        let half_way = &*state;
-        system.advance(
-            half_way,
-            &mut scratch.next,
-            &mut scratch.air,
-            #[inline(always)]
-            |chunk| {
-                let y = chunk.of(&half_way.position);
-                let v = chunk.of(&half_way.velocity);
-                for (i, a) in chunk.acceleration.iter().enumerate() {
-                    let velocity = v[i] + h * a;
-                    chunk.velocity[i] = velocity;
-                    chunk.position[i] = y[i] + 0.5 * h * velocity;
-                }
-            },
-        );
+        let motion = Motion { from: &*state, kick: h, drift: 0.5 * h, rate: Rate::New };
+        system.advance(state, &mut scratch.next, &mut scratch.air, motion);
         std::mem::swap(state, &mut scratch.next);
     }
 

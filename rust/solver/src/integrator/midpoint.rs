@@ -8,7 +8,7 @@
 
 use nalgebra::Matrix2;
 
-use super::{Integrator, Scratch, euler_stage, oscillator};
+use super::{Integrator, Scratch, euler, oscillator};
 use crate::state::State;
 use crate::system::System;
 
@@ -17,9 +17,8 @@ pub(super) struct Midpoint;
 impl Integrator for Midpoint {
     fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64) {
         let [half_way, ..] = &mut scratch.stages;
-        let old = &*state;
-        euler_stage(system, old, old, half_way, &mut scratch.air, 0.5 * h);
-        euler_stage(system, old, half_way, &mut scratch.next, &mut scratch.air, h);
+        system.advance(state, half_way, &mut scratch.air, euler(state, 0.5 * h));
+        system.advance(half_way, &mut scratch.next, &mut scratch.air, euler(state, h));
         std::mem::swap(state, &mut scratch.next);
     }
 

@@ -15,7 +15,7 @@ use nalgebra::Matrix2;
 use crate::force::AirScratch;
 use crate::settings::IntegratorKind;
 use crate::state::State;
-use crate::system::System;
+use crate::system::{Motion, Rate, System};
 
 /// States that an integrator passes through within a step, kept to save allocations.
 #[derive(Debug)]
@@ -57,30 +57,9 @@ pub(crate) fn explicit(kind: IntegratorKind) -> Option<&'static dyn Integrator> 
     }
 }
 
-/// `out = from + h rate(at)`, the stage that Runge-Kutta rules are made of.
-fn euler_stage(
-    system: &System,
-    from: &State,
-    at: &State,
-    out: &mut State,
-    air: &mut AirScratch,
-    h: f64,
-) {
-    system.advance(
-        at,
-        out,
-        air,
-        #[inline(always)]
-        |chunk| {
-            let x = chunk.of(&from.position);
-            let v = chunk.of(&from.velocity);
-            let rate = chunk.of(&at.velocity);
-            for (i, a) in chunk.acceleration.iter().enumerate() {
-                chunk.position[i] = x[i] + h * rate[i];
-                chunk.velocity[i] = v[i] + h * a;
-            }
-        },
-    );
+/// `from + h rate`, the stage that Runge-Kutta rules are made of.
+fn euler(from: &State, h: f64) -> Motion<'_> {
+    Motion { from, kick: h, drift: h, rate: Rate::Evaluated }
 }
 
 /// The matrix of `(x, v)' = (v, -w² x - c v)`.

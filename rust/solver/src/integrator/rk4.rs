@@ -12,7 +12,7 @@
 
 use nalgebra::Matrix2;
 
-use super::{Integrator, Scratch, euler_stage, oscillator};
+use super::{Integrator, Scratch, euler, oscillator};
 use crate::state::State;
 use crate::system::System;
 
@@ -22,36 +22,11 @@ impl Integrator for Rk4 {
     fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64) {
         let [s1, s2, s3] = &mut scratch.stages;
         let s = &*state;
-        euler_stage(system, s, s, s1, &mut scratch.air, 0.5 * h);
-        euler_stage(system, s, s1, s2, &mut scratch.air, 0.5 * h);
-        euler_stage(system, s, s2, s3, &mut scratch.air, h);
-        let (s1, s2, s3) = (&*s1, &*s2, &*s3);
-        system.advance(
-            s3,
-            &mut scratch.next,
-            &mut scratch.air,
-            #[inline(always)]
-            |chunk| {
-                let of = |state: &State, i: usize| {
-                    let particle = chunk.first + i;
-                    (
-                        state.position.0[chunk.index][particle],
-                        state.velocity.0[chunk.index][particle],
-                    )
-                };
-                for (i, a) in chunk.acceleration.iter().enumerate() {
-                    let ((x, v), (x1, v1)) = (of(s, i), of(s1, i));
-                    let ((x2, v2), (x3, v3)) = (of(s2, i), of(s3, i));
-                    // Differences from s first: they are small, and their rounding with them.
-                    let (dx, dv) = (
-                        (x1 - x) + 2.0 * (x2 - x) + (x3 - x),
-                        (v1 - v) + 2.0 * (v2 - v) + (v3 - v),
-                    );
-                    chunk.position[i] = x + dx / 3.0 + h / 6.0 * v3;
-                    chunk.velocity[i] = v + dv / 3.0 + h / 6.0 * a;
-                }
-            },
-        );
+        system.advance(s, s1, &mut scratch.air, euler(s, 0.5 * h));
+        system.advance(s1, s2, &mut scratch.air, euler(s, 0.5 * h));
+        system.advance(s2, s3, &mut scratch.air, euler(s, h));
+        mean(s, s1, s2, s3);
+        system.advance(s3, &mut scratch.next, &mut scratch.air, euler(s1, h / 6.0));
         std::mem::swap(state, &mut scratch.next);
     }
 
@@ -59,5 +34,22 @@ impl Integrator for Rk4 {
         let rates = oscillator(w_squared, c) * h;
         let square = rates * rates;
         Matrix2::identity() + rates + square / 2.0 + square * rates / 6.0 + square * square / 24.0
+    }
+}
+
+/// Puts `(s1 + 2 s2 + s3 - s)/3` in the place of s1.
+fn mean(s: &State, s1: &mut State, s2: &State, s3: &State) {
+    let of = [
+        (&s.position, &mut s1.position, &s2.position, &s3.position),
+        (&s.velocity, &mut s1.velocity, &s2.velocity, &s3.velocity),
+    ];
+    for (s, s1, s2, s3) in of {
+        for axis in 0..3 {
+            let (s, s1, s2, s3) = (&s.0[axis], &mut s1.0[axis], &s2.0[axis], &s3.0[axis]);
+            for (i, one) in s1.iter_mut().enumerate() {
+                // Differences from s first: they are small, and their rounding with them.
+                *one = s[i] + ((*one - s[i]) + 2.0 * (s2[i] - s[i]) + (s3[i] - s[i])) / 3.0;
+            }
+        }
     }
 }

@@ -10,28 +10,14 @@ use nalgebra::Matrix2;
 
 use super::{Integrator, Scratch, drift, kick};
 use crate::state::State;
-use crate::system::System;
+use crate::system::{Motion, Rate, System};
 
 pub(super) struct SymplecticEuler;
 
 impl Integrator for SymplecticEuler {
     fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64) {
-        let old = &*state;
-        system.advance(
-            old,
-            &mut scratch.next,
-            &mut scratch.air,
-            #[inline(always)]
-            |chunk| {
-                let x = chunk.of(&old.position);
-                let v = chunk.of(&old.velocity);
-                for (i, a) in chunk.acceleration.iter().enumerate() {
-                    let velocity = v[i] + h * a;
-                    chunk.velocity[i] = velocity;
-                    chunk.position[i] = x[i] + h * velocity;
-                }
-            },
-        );
+        let motion = Motion { from: &*state, kick: h, drift: h, rate: Rate::New };
+        system.advance(state, &mut scratch.next, &mut scratch.air, motion);
         std::mem::swap(state, &mut scratch.next);
     }
 

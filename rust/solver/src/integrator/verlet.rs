@@ -14,44 +14,17 @@ use nalgebra::Matrix2;
 
 use super::{Integrator, Scratch, drift, kick};
 use crate::state::State;
-use crate::system::System;
+use crate::system::{Motion, Rate, System};
 
 pub(super) struct Verlet;
 
 impl Integrator for Verlet {
     fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64) {
         let [drifted, ..] = &mut scratch.stages;
-        let old = &*state;
-        system.advance(
-            old,
-            drifted,
-            &mut scratch.air,
-            #[inline(always)]
-            |chunk| {
-                let x = chunk.of(&old.position);
-                let v = chunk.of(&old.velocity);
-                for (i, a) in chunk.acceleration.iter().enumerate() {
-                    let velocity = v[i] + 0.5 * h * a;
-                    chunk.velocity[i] = velocity;
-                    chunk.position[i] = x[i] + h * velocity;
-                }
-            },
-        );
-        let drifted = &*drifted;
-        system.advance(
-            drifted,
-            state,
-            &mut scratch.air,
-            #[inline(always)]
-            |chunk| {
-                let x = chunk.of(&drifted.position);
-                let u = chunk.of(&drifted.velocity);
-                for (i, a) in chunk.acceleration.iter().enumerate() {
-                    chunk.position[i] = x[i];
-                    chunk.velocity[i] = u[i] + 0.5 * h * a;
-                }
-            },
-        );
+        let kick_and_drift = Motion { from: &*state, kick: 0.5 * h, drift: h, rate: Rate::New };
+        system.advance(state, drifted, &mut scratch.air, kick_and_drift);
+        let kick = Motion { from: &*drifted, kick: 0.5 * h, drift: 0.0, rate: Rate::New };
+        system.advance(drifted, state, &mut scratch.air, kick);
     }
 
     fn amplification(&self, w_squared: f64, c: f64, h: f64) -> Matrix2<f64> {

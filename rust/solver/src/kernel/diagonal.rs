@@ -4,61 +4,75 @@ use std::ops::Range;
 
 use pulp::{Scalar, Simd};
 
-use super::CHUNK;
+use super::BLOCK;
 use super::lanes::{Lanes, difference, vectors, vectors_mut};
 use super::layout::Diagonal;
-use super::window::Window;
+use super::sums::{Axes, Sums};
 use crate::law::spring::{Damping, Pull, Terms};
 use crate::state::{Coordinates, State};
 
-/// Fills a window with the forces of a diagonal's springs that end among a chunk's own particles.
+/// Adds the forces of a diagonal's springs that end in a chunk but begin before it.
 #[inline(always)]
-pub(super) fn fill_window<S: Simd, T: Terms>(
+pub(super) fn add_from_before<S: Simd, T: Terms>(
     simd: S,
     diagonal: &Diagonal,
-    own: &Range<usize>,
+    chunk: &Range<usize>,
     state: &State,
-    window: &mut Window<'_>,
+    sums: &mut Sums,
 ) {
     let offset = diagonal.offset;
-    let reach = offset.min(CHUNK);
-    let lead = Window::lead(offset);
-    // Springs that arrive from particles before the chunk: spring i's force goes to the window's place i + shift.
-    let place = lead - reach..lead - reach + offset.min(own.len());
-    fill::<S, T>(simd, diagonal, state, window, place, own.start as isize - offset as isize);
-    fill::<S, T>(simd, diagonal, state, window, lead..lead + own.len(), own.start as isize);
+    let end = (chunk.end.max(offset) - offset).min(chunk.start);
+    let springs = diagonal.within(chunk.start.max(offset) - offset..end);
+    for start in springs.clone().step_by(BLOCK) {
+        let springs = start..springs.end.min(start + BLOCK);
+        let place = start + offset - chunk.start;
+        let sums = sums.of_second_ends(place..place + springs.len());
+        add::<S, T>(simd, diagonal, springs, state, sums);
+    }
 }
 
-/// Fills places of a window with the forces of the springs from the `first` on, and with 0 where there are none.
+/// Adds the forces of a diagonal's springs that begin in a block of a chunk.
 #[inline(always)]
-fn fill<S: Simd, T: Terms>(
+pub(super) fn add_from_block<S: Simd, T: Terms>(
     simd: S,
     diagonal: &Diagonal,
+    chunk: &Range<usize>,
+    block: Range<usize>,
     state: &State,
-    window: &mut Window<'_>,
-    places: Range<usize>,
-    first: isize,
+    sums: &mut Sums,
 ) {
-    let place_of = |spring: usize| {
-        let place = places.start as isize + (spring as isize - first);
-        (place.max(places.start as isize) as usize).min(places.end)
-    };
-    let from = place_of(diagonal.first);
-    let to = place_of(diagonal.first + diagonal.rest_lengths.len()).max(from);
-    let [x, y, z] = window.axes.each_mut().map(|axis| {
-        axis[places.start..from].fill(0.0);
-        axis[to..places.end].fill(0.0);
-        &mut axis[from..to]
-    });
-    if from == to {
-        return;
+    let offset = diagonal.offset;
+    let Range { start, end } = diagonal.within(block);
+    let middle = (chunk.end.max(offset) - offset).clamp(start, end);
+    let [from, through, to] = [start, middle, end].map(|first| first - chunk.start);
+    if start < middle {
+        let sums = sums.of(from..through, from + offset..through + offset);
+        add::<S, T>(simd, diagonal, start..middle, state, sums);
     }
-    let start = (first + (from - places.start) as isize) as usize;
-    let whole = (to - from) / S::F64_LANES * S::F64_LANES;
-    let ([x, x_rest], [y, y_rest], [z, z_rest]) =
-        (halves(x, whole), halves(y, whole), halves(z, whole));
-    pull::<S, T>(simd, diagonal, start, state, [x, y, z]);
-    pull::<Scalar, T>(Scalar::new(), diagonal, start + whole, state, [x_rest, y_rest, z_rest]);
+    if middle < end {
+        add::<S, T>(simd, diagonal, middle..end, state, sums.of_first_ends(through..to));
+    }
+}
+
+/// Adds the forces of the springs that begin at these particles: as many as fill vectors, then one by one.
+#[inline(always)]
+fn add<S: Simd, T: Terms>(
+    simd: S,
+    diagonal: &Diagonal,
+    springs: Range<usize>,
+    state: &State,
+    sums: [Axes<'_>; 2],
+) {
+    let whole = springs.len() / S::F64_LANES * S::F64_LANES;
+    let middle = springs.start + whole;
+    let [[a, b, c], [d, e, f]] = sums;
+    let ([a, a_rest], [b, b_rest], [c, c_rest]) =
+        (halves(a, whole), halves(b, whole), halves(c, whole));
+    let ([d, d_rest], [e, e_rest], [f, f_rest]) =
+        (halves(d, whole), halves(e, whole), halves(f, whole));
+    let rest = [[a_rest, b_rest, c_rest], [d_rest, e_rest, f_rest]];
+    pull::<S, T>(simd, diagonal, springs.start..middle, state, [[a, b, c], [d, e, f]]);
+    pull::<Scalar, T>(Scalar::new(), diagonal, middle..springs.end, state, rest);
 }
 
 #[inline(always)]
@@ -67,30 +81,36 @@ fn halves(slice: &mut [f64], middle: usize) -> [&mut [f64]; 2] {
     [before, after]
 }
 
-/// The forces on the second ends of the springs from particle `start` on, a whole number of vectors.
+/// Adds the forces of a whole number of vectors of springs.
 #[inline(always)]
 fn pull<S: Simd, T: Terms>(
     simd: S,
     diagonal: &Diagonal,
-    start: usize,
+    springs: Range<usize>,
     state: &State,
-    out: [&mut [f64]; 3],
+    sums: [Axes<'_>; 2],
 ) {
-    let count = out[0].len();
+    let count = springs.len();
     let pull = Pull {
         rest_length: Lanes::splat(simd, 0.0),
         stiffness: Lanes::splat(simd, diagonal.stiffness),
         damping: Lanes::splat(simd, diagonal.damping),
         stiffen_beyond: Lanes::splat(simd, diagonal.law.stiffen_beyond),
     };
-    let first = start - diagonal.first;
+    let first = springs.start - diagonal.first;
     let rest_lengths = vectors::<S>(&diagonal.rest_lengths[first..first + count]);
-    let [x, y, z] = cut::<S>(&state.position, start, count);
-    let [ox, oy, oz] = cut::<S>(&state.position, start + diagonal.offset, count);
-    let [u, v, w] = cut::<S>(&state.velocity, start, count);
-    let [ou, ov, ow] = cut::<S>(&state.velocity, start + diagonal.offset, count);
-    let [fx, fy, fz] = out.map(|axis| vectors_mut::<S>(&mut axis[..count]));
-    for i in 0..fx.len() {
+    let [x, y, z] = cut::<S>(&state.position, springs.start, count);
+    let [ox, oy, oz] = cut::<S>(&state.position, springs.start + diagonal.offset, count);
+    let [u, v, w] = cut::<S>(&state.velocity, springs.start, count);
+    let [ou, ov, ow] = cut::<S>(&state.velocity, springs.start + diagonal.offset, count);
+    let [[lx, ly, lz], [ax, ay, az]] = sums;
+    // All of one length, and the compiler knows it: no place is checked within the loop.
+    let n = rest_lengths.len();
+    let ([x, y, z], [ox, oy, oz]) = ([&x[..n], &y[..n], &z[..n]], [&ox[..n], &oy[..n], &oz[..n]]);
+    let ([u, v, w], [ou, ov, ow]) = ([&u[..n], &v[..n], &w[..n]], [&ou[..n], &ov[..n], &ow[..n]]);
+    let [lx, ly, lz] = [whole::<S>(lx, n), whole::<S>(ly, n), whole::<S>(lz, n)];
+    let [ax, ay, az] = [whole::<S>(ax, n), whole::<S>(ay, n), whole::<S>(az, n)];
+    for i in 0..n {
         let span = difference(simd, [x[i], y[i], z[i]], [ox[i], oy[i], oz[i]]);
         let velocity = if T::DAMPING == Damping::None {
             [pull.damping; 3]
@@ -98,11 +118,24 @@ fn pull<S: Simd, T: Terms>(
             difference(simd, [u[i], v[i], w[i]], [ou[i], ov[i], ow[i]])
         };
         let pull = Pull { rest_length: Lanes::of(simd, rest_lengths[i]), ..pull };
-        [fx[i], fy[i], fz[i]] = pull.on_other::<T>(span, velocity).map(|force| force.values);
+        let [fx, fy, fz] = pull.on_other::<T>(span, velocity);
+        lx[i] = (Lanes::of(simd, lx[i]) + fx).values;
+        ly[i] = (Lanes::of(simd, ly[i]) + fy).values;
+        lz[i] = (Lanes::of(simd, lz[i]) + fz).values;
+        ax[i] = (Lanes::of(simd, ax[i]) + fx).values;
+        ay[i] = (Lanes::of(simd, ay[i]) + fy).values;
+        az[i] = (Lanes::of(simd, az[i]) + fz).values;
     }
 }
 
 #[inline(always)]
 fn cut<S: Simd>(coordinates: &Coordinates, start: usize, count: usize) -> [&[S::f64s]; 3] {
-    coordinates.0.each_ref().map(|axis| vectors::<S>(&axis[start..start + count]))
+    let [x, y, z] = &coordinates.0;
+    let part = start..start + count;
+    [vectors::<S>(&x[part.clone()]), vectors::<S>(&y[part.clone()]), vectors::<S>(&z[part])]
+}
+
+#[inline(always)]
+fn whole<S: Simd>(axis: &mut [f64], count: usize) -> &mut [S::f64s] {
+    &mut vectors_mut::<S>(axis)[..count]
 }

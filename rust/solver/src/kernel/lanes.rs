@@ -57,6 +57,11 @@ impl<S: Simd> Number for Lanes<S> {
     }
 
     #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self { values: self.simd.min_f64s(self.values, other.values), ..self }
+    }
+
+    #[inline(always)]
     fn where_positive(self, sign: Self) -> Self {
         let zero = self.simd.splat_f64s(0.0);
         let is_positive = self.simd.less_than_f64s(zero, sign.values);

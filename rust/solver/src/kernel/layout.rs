@@ -25,12 +25,11 @@ pub(crate) struct Diagonal {
 }
 
 impl Diagonal {
-    /// Whether a spring of it ends among these particles.
-    pub(crate) fn reaches(&self, particles: &Range<usize>) -> bool {
-        let end = self.first + self.rest_lengths.len();
-        let (first, end_of_second) = (self.first + self.offset, end + self.offset);
-        (self.first < particles.end && particles.start < end)
-            || (first < particles.end && particles.start < end_of_second)
+    /// Those of these particles at which it may have a spring.
+    #[inline(always)]
+    pub(super) fn within(&self, particles: Range<usize>) -> Range<usize> {
+        let start = particles.start.max(self.first);
+        start..particles.end.min(self.first + self.rest_lengths.len()).max(start)
     }
 }
 

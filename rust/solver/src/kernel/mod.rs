@@ -5,36 +5,43 @@
 //! again by the chunk that they lead to, so no two threads ever share a sum, and the bits do not depend on their
 //! number. The other springs are *gathered*, one particle at a time, from both ends.
 //!
-//! A diagonal's forces are computed first and stored, then summed: two short loops, because a processor looks ahead
-//! over a few hundred instructions only, and one spring's chain from position to force is long. The laws are written
-//! for numbers of any width ([`crate::law::number`]); [`crate::system`] finds the instruction set.
+//! A chunk goes block by block: all diagonals of a block while its particles and sums are in the nearest cache, and
+//! then, since springs lead on in memory only, the block's particles can move. The laws are written for numbers of
+//! any width ([`crate::law::number`]); [`crate::system`] finds the instruction set.
 
 mod diagonal;
 mod gather;
 mod lanes;
 mod layout;
+mod sums;
 #[cfg(test)]
 mod tests;
-mod window;
 
 pub(crate) use layout::{Diagonal, GATHERED, GatherSlot, Layout};
-pub(crate) use window::Windows;
+pub(crate) use sums::Sums;
+
+use std::ops::Range;
 
 use pulp::Simd;
 
-use diagonal::fill_window;
+use diagonal::{add_from_before, add_from_block};
 use gather::add_gather;
-use window::{SIDE_BY_SIDE, add_windows};
 
 use crate::law::spring::Damping;
 use crate::state::State;
 
 /// Particles that one task handles: enough for few springs to be computed in two chunks, and few enough for two
-/// cores to share a small cloth and for a chunk's forces to stay in a core's cache.
+/// cores to share a small cloth.
 pub(crate) const CHUNK: usize = 2048;
 
+/// Particles whose springs are computed at a time: few enough for all that these touch to stay in the nearest cache.
+pub(crate) const BLOCK: usize = 512;
+
 /// A vector for each particle of one chunk, an array an axis.
-pub(crate) type ChunkVectors = [[f64; CHUNK]; 3];
+pub(crate) type ChunkVectors = [[f64; PLACES]; 3];
+
+/// Places for a chunk's particles; the excess keeps axes from falling on the same lines of the cache.
+const PLACES: usize = CHUNK + 88;
 
 /// Calls a function with the terms of a law as its type parameter.
 macro_rules! with_terms {
@@ -60,36 +67,42 @@ macro_rules! with_terms {
     };
 }
 
-/// Adds the spring forces (N) on the particles of a chunk.
+/// Adds the forces (N) on a chunk's particles of all springs but those on diagonals that begin in it.
 ///
-/// Inlined into its caller, to be compiled for the instruction set that the caller found.
+/// Inlined into its caller, as the next one is, to be compiled for the instruction set that the caller found.
 #[inline(always)]
-pub(crate) fn add_spring_forces<S: Simd>(
+pub(crate) fn add_from_outside<S: Simd>(
     simd: S,
     layout: &Layout,
     chunk: usize,
     state: &State,
-    windows: &mut Windows,
-    force: &mut ChunkVectors,
+    sums: &mut Sums,
 ) {
     let own = chunk * CHUNK..((chunk + 1) * CHUNK).min(state.len());
-    let mut windows = windows.each();
-    let (mut offsets, mut used) = ([0; SIDE_BY_SIDE], 0);
-    for diagonal in layout.diagonals.iter().filter(|diagonal| diagonal.reaches(&own)) {
-        let window = &mut windows[used];
-        with_terms!(diagonal.law, fill_window::<S>(simd, diagonal, &own, state, window));
-        offsets[used] = diagonal.offset;
-        used += 1;
-        if used == SIDE_BY_SIDE {
-            add_windows(simd, &windows, &offsets, used, own.len(), force);
-            used = 0;
-        }
-    }
-    if used > 0 {
-        add_windows(simd, &windows, &offsets, used, own.len(), force);
-    }
     for gather in &layout.gathers[layout.gathers_of_chunk[chunk].clone()] {
         let slots = &layout.gather_slots[gather.slots.clone()];
+        let force = &mut sums.arriving;
         with_terms!(gather.law, add_gather::<S>(simd, gather, slots, chunk, state, force));
+    }
+    for diagonal in &layout.diagonals {
+        with_terms!(diagonal.law, add_from_before::<S>(simd, diagonal, &own, state, sums));
+    }
+}
+
+/// Adds the forces (N) of the springs on diagonals that begin in a block; blocks come in order. Then the sums of the
+/// block's particles are whole.
+#[inline(always)]
+pub(crate) fn add_from_inside<S: Simd>(
+    simd: S,
+    layout: &Layout,
+    chunk: usize,
+    block: &Range<usize>,
+    state: &State,
+    sums: &mut Sums,
+) {
+    let own = chunk * CHUNK..((chunk + 1) * CHUNK).min(state.len());
+    for diagonal in &layout.diagonals {
+        let block = block.clone();
+        with_terms!(diagonal.law, add_from_block::<S>(simd, diagonal, &own, block, state, sums));
     }
 }

@@ -3,7 +3,7 @@
 use boucle_geometry::{Mesh, Vector};
 use pulp::{Arch, Simd, WithSimd};
 
-use super::{CHUNK, ChunkVectors, Layout, Windows, add_spring_forces};
+use super::{BLOCK, CHUNK, Layout, Sums, add_from_inside, add_from_outside};
 use crate::cloth::{Cloth, Mass};
 use crate::law::spring::Law;
 use crate::material::{DampingLaw, Limiter, SpringMaterial};
@@ -125,13 +125,18 @@ impl WithSimd for AllForces<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Vec<Vector> {
-        let mut windows = Windows::default();
         let mut forces = Vec::new();
         for chunk in 0..self.state.len().div_ceil(CHUNK) {
-            let mut force: ChunkVectors = [[0.0; CHUNK]; 3];
-            add_spring_forces(simd, self.layout, chunk, self.state, &mut windows, &mut force);
-            let count = CHUNK.min(self.state.len() - chunk * CHUNK);
-            forces.extend((0..count).map(|i| Vector::from_fn(|axis, _| force[axis][i])));
+            let mut sums = Sums::zeros();
+            add_from_outside(simd, self.layout, chunk, self.state, &mut sums);
+            let (first, end) = (chunk * CHUNK, ((chunk + 1) * CHUNK).min(self.state.len()));
+            for start in (first..end).step_by(BLOCK) {
+                let block = start..end.min(start + BLOCK);
+                add_from_inside(simd, self.layout, chunk, &block, self.state, &mut sums);
+                let force = |i: usize, axis: usize| sums.arriving[axis][i] - sums.leaving[axis][i];
+                let places = block.start - first..block.end - first;
+                forces.extend(places.map(|i| Vector::from_fn(|axis, _| force(i, axis))));
+            }
         }
         forces
     }

@@ -11,6 +11,9 @@ pub(crate) trait Number:
 
     fn sqrt(self) -> Self;
 
+    /// The lesser of the two; neither is NaN.
+    fn min(self, other: Self) -> Self;
+
     /// `self` where `sign` is above 0, else 0.
     fn where_positive(self, sign: Self) -> Self;
 }
@@ -24,6 +27,11 @@ impl Number for f64 {
     #[inline(always)]
     fn sqrt(self) -> Self {
         self.sqrt()
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
     }
 
     #[inline(always)]

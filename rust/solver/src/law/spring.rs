@@ -37,6 +37,9 @@ pub struct Spring {
 /// Added to squared lengths (m²), for ends that coincide: rounding loses it in all others.
 const SHORTEST_SQUARED: f64 = 1e-36;
 
+/// For each metre of rest length (N/m²): far more than any spring has.
+const STIFFEST: f64 = 1e30;
+
 /// What the springs of one cloth share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Law {
@@ -143,17 +146,18 @@ impl<N: Number> Pull<N> {
         let one = x.all(1.0);
         // Two sums side by side: a shorter chain to wait for.
         let length = ((x * x + y * y) + (z * z + x.all(SHORTEST_SQUARED))).sqrt();
-        let mut pull = self.stiffness * (one - self.rest_length / length);
+        // Exact for every spring, whose rest length is 1e-9 m at least; 0 where there is none.
+        let most = self.rest_length * x.all(STIFFEST);
+        let mut pull = self.stiffness.min(most) * (one - self.rest_length / length);
         if T::STIFFENS {
-            let ratio = length / self.rest_length;
+            let ratio = length / (self.rest_length + x.all(SHORTEST_SQUARED));
             pull = pull * (one + (ratio - one).where_positive(ratio - self.stiffen_beyond));
         }
         if T::DAMPING == Damping::Axial {
-            pull = pull + self.damping * (u * x + v * y + w * z) / (length * length);
+            pull = pull + self.damping.min(most) * (u * x + v * y + w * z) / (length * length);
         }
-        let pull = pull.where_positive(self.rest_length);
         if T::DAMPING == Damping::Relative {
-            let damping = self.damping.where_positive(self.rest_length);
+            let damping = self.damping.min(most);
             [pull * x + damping * u, pull * y + damping * v, pull * z + damping * w]
         } else {
             [pull * x, pull * y, pull * z]

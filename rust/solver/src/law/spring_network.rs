@@ -12,11 +12,10 @@
 //!
 //! Source: Provot 1995 for grids; the rule for other meshes after Baraff & Witkin 1998's neighbourhoods.
 
-use std::collections::HashSet;
-
 use boucle_geometry::{Mesh, Vector};
 
 use super::Spring;
+use crate::grouped::Grouped;
 use crate::material::{SpringKind, SpringMaterial};
 
 /// A continuation bends by less than 60°, or it is none.
@@ -34,14 +33,11 @@ pub fn springs_of_mesh(
 ) -> Vec<Spring> {
     let edges = mesh.edges();
     let bends = bend_pairs(mesh, &edges, positions);
-    let shears = shear_pairs(mesh);
-    let mut joined = HashSet::new();
-    let mut springs = Vec::new();
+    let shears = without(shear_pairs(mesh), &edges);
+    let bends = without(without(bends, &edges), &shears);
+    let mut springs = Vec::with_capacity(edges.len() + shears.len() + bends.len());
     for (kind, pairs) in SpringKind::ALL.into_iter().zip([edges, shears, bends]) {
         for ends in pairs {
-            if !joined.insert(ends) {
-                continue;
-            }
             let span = positions[ends[0] as usize] - positions[ends[1] as usize];
             springs.push(Spring {
                 ends,
@@ -62,6 +58,16 @@ fn ordered(a: u32, b: u32) -> [u32; 2] {
 fn sorted_once(mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
     pairs.sort_unstable();
     pairs.dedup();
+    pairs
+}
+
+/// Sorted pairs less other sorted ones.
+fn without(mut pairs: Vec<[u32; 2]>, taken: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    let mut taken = taken.iter().peekable();
+    pairs.retain(|pair| {
+        while taken.next_if(|&other| other < pair).is_some() {}
+        taken.peek() != Some(&pair)
+    });
     pairs
 }
 
@@ -89,24 +95,21 @@ fn shear_pairs(mesh: &Mesh) -> Vec<[u32; 2]> {
 }
 
 fn bend_pairs(mesh: &Mesh, edges: &[[u32; 2]], positions: &[Vector]) -> Vec<[u32; 2]> {
-    let mut neighbors = vec![Vec::new(); mesh.vertex_count()];
-    for &[a, b] in edges {
-        neighbors[a as usize].push(b);
-        neighbors[b as usize].push(a);
-    }
-    let mut corners_of = vec![Vec::new(); mesh.vertex_count()];
-    for (face, corners) in mesh.faces().enumerate() {
+    let both_ways = edges.iter().flat_map(|&[a, b]| [(a, b), (b, a)]);
+    let neighbors = Grouped::new(mesh.vertex_count(), both_ways);
+    // For each corner, the two vertices beside it.
+    let corners = mesh.faces().flat_map(|corners| {
         let n = corners.len();
-        for i in 0..n {
-            let around = ordered(corners[(i + n - 1) % n], corners[(i + 1) % n]);
-            corners_of[corners[i] as usize].push((face, around));
-        }
-    }
+        let around = move |i: usize| ordered(corners[(i + n - 1) % n], corners[(i + 1) % n]);
+        (0..n).map(move |i| (corners[i], around(i)))
+    });
+    let corners = Grouped::new(mesh.vertex_count(), corners);
     let mut pairs = Vec::new();
     for middle in 0..mesh.vertex_count() {
-        let shares_face = |pair: [u32; 2]| corners_of[middle].iter().any(|&(_, two)| two == pair);
-        for &u in &neighbors[middle] {
-            let candidates = neighbors[middle]
+        let shares_face = |pair: [u32; 2]| corners.of(middle).contains(&pair);
+        for &u in neighbors.of(middle) {
+            let candidates = neighbors
+                .of(middle)
                 .iter()
                 .filter(|&&w| w != u && !shares_face(ordered(u, w)))
                 .map(|&w| (bend_cosine(positions, u, middle as u32, w), w));

@@ -3,6 +3,8 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use crate::grouped::Grouped;
+
 /// An edge to be limited, its end nearer to the pins first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
@@ -59,7 +61,7 @@ pub(super) fn outward(
             (Distance(da.min(db)), Distance(da.max(db)), edge)
         })
         .collect();
-    sorted.sort_by_key(|&(near, far, edge)| (near, far, edge.near, edge.far));
+    sorted.sort_unstable_by_key(|&(near, far, edge)| (near, far, edge.near, edge.far));
     sorted.into_iter().map(|(_, _, edge)| edge).collect()
 }
 
@@ -69,11 +71,8 @@ fn distances(
     particle_count: usize,
     is_pinned: impl Fn(u32) -> bool,
 ) -> Vec<f64> {
-    let mut neighbors = vec![Vec::new(); particle_count];
-    for &([a, b], length) in edges {
-        neighbors[a as usize].push((b, length));
-        neighbors[b as usize].push((a, length));
-    }
+    let both_ways = edges.iter().flat_map(|&([a, b], length)| [(a, (b, length)), (b, (a, length))]);
+    let neighbors = Grouped::new(particle_count, both_ways);
     let mut distances = vec![f64::INFINITY; particle_count];
     let mut heap = BinaryHeap::new();
     for particle in (0..particle_count as u32).filter(|&particle| is_pinned(particle)) {
@@ -84,7 +83,7 @@ fn distances(
         if distance > distances[particle as usize] {
             continue;
         }
-        for &(neighbor, length) in &neighbors[particle as usize] {
+        for &(neighbor, length) in neighbors.of(particle as usize) {
             let through = distance + length;
             if through < distances[neighbor as usize] {
                 distances[neighbor as usize] = through;

@@ -110,4 +110,3 @@ fn the_factor_of_a_grid_stays_small() {
     let size = Ldlt::new(&graph, &positions, &matrix).size();
     assert!(size < 1_100_000, "{size}");
 }
-#[test]

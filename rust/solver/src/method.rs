@@ -8,12 +8,12 @@ use crate::state::State;
 use crate::system::System;
 
 /// An integrator with its memory.
-pub(crate) enum Motion {
+pub(crate) enum Method {
     Explicit(&'static dyn Integrator, Box<Scratch>),
     Implicit(Box<Implicit>),
 }
 
-impl Motion {
+impl Method {
     pub(crate) fn new(
         kind: IntegratorKind,
         cloths: &[Cloth],

@@ -84,6 +84,8 @@ fn settings(scene: &Scene, threads: usize) -> Settings {
         first_frame: scene.scene.frames[0],
         integrator: scene.solver.integrator,
         step_size: scene.solver.step_size(),
+        tolerance: scene.solver.tolerance.unwrap_or(Settings::default().tolerance),
+        linear_solver: scene.solver.linear_solver,
         perturbation: PERTURBATION,
         allow_unstable: scene.solver.allow_unstable,
         threads,

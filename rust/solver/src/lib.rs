@@ -41,6 +41,6 @@ pub use cloth::{Cloth, Mass, mesh_of};
 pub use error::{Error, Result};
 pub use force::{Region, Wind, WindLaw};
 pub use law::{Spring, springs_of_mesh};
-pub use material::{DampingLaw, Limiter, SpringKind, SpringMaterial};
-pub use settings::{IntegratorKind, MOST_SUBSTEPS, Settings, StepSize};
+pub use material::{DampingLaw, Limiter, SpringKind, SpringMaterial, StiffnessFrom};
+pub use settings::{IntegratorKind, LinearSolver, MOST_SUBSTEPS, Settings, StepSize};
 pub use simulation::Simulation;

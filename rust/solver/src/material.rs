@@ -28,6 +28,16 @@ pub enum DampingLaw {
     Axial,
 }
 
+/// What the three stiffnesses of a material are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StiffnessFrom {
+    /// Those of the springs themselves (the paper).
+    #[default]
+    Springs,
+    /// Those of a membrane; springs get theirs from the mesh, so that cloth is as stiff on any.
+    Continuum,
+}
+
 /// What keeps springs below their allowed length `(1 + rate) L0`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Limiter {
@@ -48,6 +58,8 @@ pub enum Limiter {
 pub struct SpringMaterial {
     /// Stiffness (N/m) of stretch, shear and bend springs.
     pub stiffness: [f64; 3],
+    /// Whether those are the springs' own.
+    pub stiffness_from: StiffnessFrom,
     /// Damping (N·s/m) of stretch, shear and bend springs.
     pub damping: [f64; 3],
     /// Which relative velocity is damped.
@@ -64,6 +76,7 @@ impl Default for SpringMaterial {
     fn default() -> Self {
         Self {
             stiffness: [500.0, 100.0, 5.0],
+            stiffness_from: StiffnessFrom::default(),
             damping: [0.0; 3],
             damping_law: DampingLaw::default(),
             air_damping: 0.0,

@@ -49,6 +49,16 @@ impl Pins {
         }
     }
 
+    /// The largest change of a pin's velocity (m/s) if it is to arrive after `duration` seconds.
+    pub(crate) fn largest_change(&self, state: &State, duration: f64) -> f64 {
+        let changes = self.targets.iter().map(|&(particle, target)| {
+            let particle = particle as usize;
+            let way = target - state.position.get(particle);
+            (way / duration - state.velocity.get(particle)).norm()
+        });
+        changes.fold(0.0, f64::max)
+    }
+
     /// Puts the pins on their targets.
     pub(crate) fn arrive(&self, state: &mut State) {
         for &(particle, target) in &self.targets {

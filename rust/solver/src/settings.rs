@@ -58,10 +58,22 @@ impl IntegratorKind {
     }
 }
 
+/// What inverts the constant matrix of an implicit step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LinearSolver {
+    /// By the number of particles.
+    #[default]
+    Auto,
+    /// Exactly, by elimination.
+    Ldlt,
+    /// Nearly, by a cycle over coarser and coarser matrices.
+    Multigrid,
+}
+
 /// How a frame is cut into steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum StepSize {
-    /// As few as hold the stability bound.
+    /// As few as hold the stability bound, or, for implicit integrators, the tolerance.
     #[default]
     Auto,
     /// This many a frame.
@@ -83,6 +95,10 @@ pub struct Settings {
     pub integrator: IntegratorKind,
     /// How a frame is cut into steps.
     pub step_size: StepSize,
+    /// What an implicit integrator may be off in a step, relative to the cloths' size, where `Auto` picks the steps.
+    pub tolerance: f64,
+    /// What inverts the constant matrix of an implicit step.
+    pub linear_solver: LinearSolver,
     /// Height of the unevenness given to a sheet as the first step starts, as a part of its mean edge; 1e-6 lets a
     /// flat sheet in a symmetric scene buckle, 0 leaves it as it is.
     pub perturbation: f64,
@@ -100,6 +116,8 @@ impl Default for Settings {
             first_frame: 1,
             integrator: IntegratorKind::default(),
             step_size: StepSize::default(),
+            tolerance: 5e-3,
+            linear_solver: LinearSolver::default(),
             perturbation: 0.0,
             allow_unstable: false,
             threads: 0,
@@ -126,6 +144,8 @@ impl Settings {
         within("fps (1/s)", self.fps, "0.01 to 1e6", is_rate)?;
         let is_small = (0.0..=0.01).contains(&self.perturbation);
         within("perturbation", self.perturbation, "0 to 0.01", is_small)?;
+        let is_tolerance = (1e-6..=1.0).contains(&self.tolerance);
+        within("tolerance", self.tolerance, "1e-6 to 1", is_tolerance)?;
         match self.step_size {
             StepSize::Auto => Ok(()),
             StepSize::Substeps(count) => {

@@ -11,7 +11,7 @@ use crate::cloth::{Cloth, FARTHEST};
 use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::force::Wind;
-use crate::implicit::Memory;
+use crate::implicit::{Accuracy, Memory};
 use crate::integrator::explicit;
 use crate::law::spring::Law;
 use crate::limit::Limit;
@@ -45,6 +45,7 @@ pub struct Simulation {
     good_memory: Option<Memory>,
     method: Method,
     frame: i32,
+    accuracy: Accuracy,
     /// Steps that led to the present frame.
     substeps_taken: u32,
     /// Iterations of the linear solver in those.
@@ -96,6 +97,7 @@ impl Simulation {
             good: state.clone(),
             good_memory: None,
             frame: settings.first_frame,
+            accuracy: Accuracy { tolerance: settings.tolerance, size: size_of(&state) },
             substeps_taken: 0,
             iterations_taken: 0,
             cloths,
@@ -208,6 +210,10 @@ impl Simulation {
         }
         self.frame += 1;
         self.substeps_taken = substeps;
+        if let Some(memory) = self.method.memory_mut() {
+            memory.substeps = self.accuracy.after(substeps, memory.error / f64::from(substeps));
+            memory.error = 0.0;
+        }
         self.iterations_taken = self.method.take_iterations();
         Ok(self.certificate())
     }
@@ -400,8 +406,9 @@ impl Simulation {
             Err(Error::TooManySubsteps { substeps: count, limit: MOST_SUBSTEPS, integrator })
         };
         let is_implicit = explicit(self.settings.integrator).is_none();
-        if is_implicit && asked.is_none() {
-            return Ok(4);
+        if let (Some(memory), None) = (self.method.memory(), asked) {
+            let change = self.pins.largest_change(&self.state, duration);
+            return Ok(self.accuracy.plan(memory.substeps, change, duration));
         }
         if let Some(count) = asked
             && (self.settings.allow_unstable || is_implicit)
@@ -418,6 +425,16 @@ impl Simulation {
             }
         }
     }
+}
+
+/// Root mean square distance (m) of the particles from their middle.
+fn size_of(state: &State) -> f64 {
+    let count = state.len() as f64;
+    let spreads = state.position.0.iter().map(|axis| {
+        let middle = axis.iter().sum::<f64>() / count;
+        axis.iter().map(|x| (x - middle) * (x - middle)).sum::<f64>() / count
+    });
+    spreads.sum::<f64>().sqrt().max(f64::MIN_POSITIVE)
 }
 
 /// The first particle that left the finite numbers, or the space in which numbers are fine enough.

@@ -1,6 +1,6 @@
 //! `[[cloth]]`: its rest shape, mass, pins and springs.
 
-use boucle_solver::{DampingLaw, Limiter, Mass, SpringMaterial};
+use boucle_solver::{DampingLaw, Limiter, Mass, SpringMaterial, StiffnessFrom};
 use serde::{Deserialize, Serialize};
 
 use super::choice::{Choice, FabricKeys, Later, NotYet};
@@ -209,17 +209,9 @@ impl Choice for Model {
     const LATER: &'static [&'static str] = &["fabric"];
 }
 
-/// What the three stiffnesses are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum StiffnessFrom {
-    /// Those of the springs themselves.
-    #[default]
-    Springs,
-}
-
 impl Choice for StiffnessFrom {
-    const WORDS: &'static [(&'static str, Self)] = &[("springs", Self::Springs)];
-    const LATER: &'static [&'static str] = &["continuum"];
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("springs", Self::Springs), ("continuum", Self::Continuum)];
 }
 
 impl Choice for DampingLaw {
@@ -297,6 +289,7 @@ impl Springs {
         let kinds = [self.damping_stretch, self.damping_shear, self.damping_bend];
         SpringMaterial {
             stiffness: [self.stretch, self.shear, self.bend],
+            stiffness_from: self.stiffness_from,
             damping: kinds.map(|damping| damping.unwrap_or(self.damping)),
             damping_law: self.damping_law,
             air_damping: self.air_damping,

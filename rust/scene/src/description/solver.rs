@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use boucle_solver::{IntegratorKind, MOST_SUBSTEPS, StepSize};
+use boucle_solver::{IntegratorKind, LinearSolver, MOST_SUBSTEPS, StepSize};
 use serde::de::{Deserializer, Unexpected, Visitor};
 use serde::{Deserialize, Serialize, Serializer};
 
-use super::choice::{Choice, NotYet};
+use super::choice::Choice;
 use crate::error::{Error, Result};
 use crate::limits;
 
@@ -23,8 +23,11 @@ pub struct SolverDescription {
     pub time_step: Option<f64>,
     /// Takes a step beyond the stability bound as asked.
     pub allow_unstable: bool,
-    /// For implicit integrators, later.
-    pub tolerance: Option<NotYet>,
+    /// What an implicit integrator may be off in a step, relative to the cloths' size, if substeps is "auto".
+    pub tolerance: Option<f64>,
+    /// What inverts the constant matrix of an implicit step.
+    #[serde(deserialize_with = "Choice::read", serialize_with = "Choice::write")]
+    pub linear_solver: LinearSolver,
 }
 
 impl SolverDescription {
@@ -43,6 +46,10 @@ impl SolverDescription {
             let both = "solver: substeps and time_step; accepted: one of the two";
             return Err(Error::input(both));
         }
+        if let Some(tolerance) = self.tolerance {
+            let accepted = "1e-6 to 1";
+            limits::within("solver.tolerance", tolerance, &(1e-6..=1.0), accepted)?;
+        }
         let Some(step) = self.time_step else { return Ok(()) };
         limits::above_zero("solver.time_step", step, 1e3, " s")?;
         let shortest = 1.0 / (fps * f64::from(MOST_SUBSTEPS));
@@ -56,6 +63,8 @@ impl SolverDescription {
 
 impl Choice for IntegratorKind {
     const WORDS: &'static [(&'static str, Self)] = &[
+        ("bdf2", Self::Bdf2),
+        ("implicit_euler", Self::ImplicitEuler),
         ("symplectic_euler", Self::SymplecticEuler),
         ("forward_euler", Self::ForwardEuler),
         ("verlet", Self::Verlet),
@@ -63,7 +72,11 @@ impl Choice for IntegratorKind {
         ("midpoint", Self::Midpoint),
         ("rk4", Self::Rk4),
     ];
-    const LATER: &'static [&'static str] = &["implicit_euler", "bdf2"];
+}
+
+impl Choice for LinearSolver {
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("auto", Self::Auto), ("ldlt", Self::Ldlt), ("multigrid", Self::Multigrid)];
 }
 
 /// Steps a frame.

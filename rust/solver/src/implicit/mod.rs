@@ -25,6 +25,7 @@
 mod hessian;
 mod history;
 mod preconditioner;
+mod substeps;
 mod taut;
 
 use crate::cloth::Cloth;
@@ -36,6 +37,7 @@ use hessian::Hessian;
 use history::Formula;
 pub(crate) use history::Memory;
 use preconditioner::Preconditioner;
+pub(crate) use substeps::Accuracy;
 use taut::{Taut, WithTaut};
 
 /// Which formula makes the base of a step.

@@ -1,5 +1,6 @@
 //! Laws: how a piece of cloth answers deformation.
 
+mod continuum;
 pub(crate) mod number;
 pub(crate) mod spring;
 mod spring_network;

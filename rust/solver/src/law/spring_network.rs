@@ -15,8 +15,9 @@
 use boucle_geometry::{Mesh, Vector};
 
 use super::Spring;
+use super::continuum::from_membrane;
 use crate::grouped::Grouped;
-use crate::material::{SpringKind, SpringMaterial};
+use crate::material::{SpringKind, SpringMaterial, StiffnessFrom};
 
 /// A continuation bends by less than 60°, or it is none.
 const STRAIGHT_ENOUGH: f64 = -0.5;
@@ -47,6 +48,9 @@ pub fn springs_of_mesh(
                 damping: material.damping[kind as usize],
             });
         }
+    }
+    if material.stiffness_from == StiffnessFrom::Continuum {
+        from_membrane(mesh, positions, &mut springs);
     }
     springs
 }

@@ -2,6 +2,10 @@
 
 Exit codes: 0 done; 2 the input is wrong, told in one line; 3 the simulation diverged; 4 the cache cannot be written;
 130 stopped by the user. After 3, 4 and 130 the frames so far are kept, and after 130 `--resume` goes on.
+
+A .blend with `--out` stays as it is; cloths whose files there would be the same ones are refused. Without `--out` each cloth
+gets its own cache, and the file is saved with its own settings, not those of `--set`, so that it plays the frames; it is
+not saved if there are none.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """Bake a scene or a .blend file without a window.
 
-Exit codes: 0 done; 2 the input is wrong, told in one line; 3 the simulation diverged; 4 the cache cannot be written;
+Exit codes: 0 done; 2 the input is wrong, told in one line; 3 the simulation diverged, or would from
+a frame on, because strained springs need smaller steps than were set; 4 the cache cannot be written;
 130 stopped by the user. After 3, 4 and 130 the frames so far are kept, and after 130 `--resume` goes on.
 
 A .blend with `--out` stays as it is; cloths whose files there would be the same ones are refused. Without `--out` each cloth
@@ -42,6 +43,7 @@ class Bake(Protocol):
 
     SceneError: type[Exception]
     DivergedError: type[Exception]
+    UnstableError: type[Exception]
     CacheError: type[Exception]
 
     def bake(self, scene: str, out: str, **options: object) -> Mapping[str, object]:
@@ -204,7 +206,7 @@ def run(words: Sequence[str]) -> int:
     except core.SceneError as error:
         complain(error)
         return WRONG_INPUT
-    except core.DivergedError as error:
+    except (core.DivergedError, core.UnstableError) as error:
         complain(f"{error}; the frames before it are kept")
         return DIVERGED
     except core.CacheError as error:

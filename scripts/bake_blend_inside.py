@@ -228,7 +228,7 @@ class Baker:
                 self.pull(bake, steps)
             if self.is_stopped():
                 return self.complain(bake, GeneratorExit(), STOPPED)
-        except native.DivergedError as error:
+        except (native.DivergedError, native.UnstableError) as error:
             return self.complain(bake, error, DIVERGED)
         except (refusal.CacheRefusal, OSError) as error:
             return self.complain(bake, error, CACHE)

@@ -22,6 +22,11 @@ class DivergedError(BoucleError, ArithmeticError):
     frame: int
     vertex: int
 
+class UnstableError(BoucleError, ArithmeticError):
+    """From this frame on the settings would not stay stable. Earlier frames are kept."""
+
+    frame: int
+
 class CacheError(BoucleError, OSError):
     """A result cannot be written or read (disk full, no permission). Earlier frames are kept."""
 
@@ -79,7 +84,7 @@ class Simulation:
         """Move on by one frame and return its certificate: a row of `frames` in report.json, without `seconds`.
 
         Raises:
-            DivergedError: The state is that of the last good frame.
+            DivergedError, UnstableError: The state is that of the last good frame.
         """
 
     def certificate(self) -> dict[str, float | int | str | None]:

@@ -262,6 +262,23 @@ def test_divergence_is_exit_code_3_and_a_folder_that_cannot_be_is_4(new_blender)
     assert "cannot be written" in done.stderr
 
 
+def test_a_step_that_becomes_unstable_is_exit_code_3_with_the_frames_before_it(new_blender):
+    path = new_blender.folder / "shot.blend"
+    new_blender.run(make_file, path=path, columns=8, end=60)
+    out = new_blender.folder / "out"
+    soft = ["Cloth.stretch=20", "Cloth.shear=5", "Cloth.bend=0.5", "Cloth.limiter='stiffen'"]
+    words = [path, "--out", out, "--quiet", "--set", *soft]
+    refused = bake(*words, "Cloth.substeps=1", check=2).stderr
+    least = refused.partition("at least ")[2].partition(" ")[0]
+    done = bake(*words, f"Cloth.substeps={least}", check=3)
+    kept = samples(out / "Cloth.pc2")[-1]
+    assert 1 < kept < 60
+    assert f"frame {kept + 1} cannot be simulated: solver: the step of " in done.stderr
+    assert f"frames up to {kept} are kept" in done.stderr
+    assert len(json.loads((out / "report.json").read_text())["frames"]) == kept
+    assert (out / "Cloth.checkpoint").is_file()
+
+
 def test_the_exit_code_of_two_cloths_is_that_of_the_first_failure(new_blender):
     path = new_blender.folder / "shot.blend"
     out = new_blender.folder / "out"

@@ -218,6 +218,22 @@ def test_a_divergence_ends_with_3_and_keeps_the_frames_before_it(
     assert pc2(tmp_path / "out" / "sheet.pc2")[1].shape[0] == len(kept)
 
 
+def test_a_step_that_becomes_unstable_ends_with_3_and_names_the_frame(
+    run_bake, small_scene, tmp_path, read_report
+):
+    soft = "cloth.0.springs={ stretch = 20, shear = 5, bend = 0.5, limiter = 'stiffen' }"
+    words = [small_scene, "--out", "out", "--quiet", "--set", "scene.frames=[1, 60]", soft]
+    line = complaint(run_bake(*words, "solver.substeps=1"), 2)
+    least = line.partition("at least ")[2].partition(" ")[0]
+    line = complaint(run_bake(*words, f"solver.substeps={least}"), 3)
+    kept = read_report(tmp_path / "out")["frames"]
+    assert f"frame {len(kept) + 1} cannot be simulated: solver: the step of " in line
+    assert line.endswith("; the frames before it are kept\n")
+    assert len(kept) > 1
+    assert pc2(tmp_path / "out" / "sheet.pc2")[1].shape[0] == len(kept)
+    assert (tmp_path / "out" / "boucle.checkpoint").exists()
+
+
 @pytest.mark.parametrize(
     "prepare",
     [

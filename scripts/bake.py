@@ -7,6 +7,9 @@ a frame on, because strained springs need smaller steps than were set; 4 the cac
 A .blend with `--out` stays as it is; cloths whose files there would be the same ones are refused. Without `--out` each cloth
 gets its own cache, and the file is saved with its own settings, not those of `--set`, so that it plays the frames; it is
 not saved if there are none.
+
+Ctrl-C (or SIGTERM) is heard at the end of the frame that is being simulated. One bake at a time goes into a folder: another
+one is refused while the first runs.
 """
 
 from __future__ import annotations
@@ -21,6 +24,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NoReturn, Protocol
 
+import bake_lock
 from bake_progress import Progress, progress_on
 
 DONE, FAULT, WRONG_INPUT, DIVERGED, CACHE, STOPPED = 0, 1, 2, 3, 4, 130
@@ -127,7 +131,7 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
 def bake_scene(core: Bake, options: argparse.Namespace) -> int:
     """Bake a TOML scene and return the exit code."""
     out = options.out or str(Path("out") / Path(options.file).stem)
-    with progress_on(options.quiet) as progress:
+    with bake_lock.held(Path(out)), progress_on(options.quiet) as progress:
         report = core.bake(
             options.file,
             out,
@@ -203,7 +207,7 @@ def run(words: Sequence[str]) -> int:
         return WRONG_INPUT
     try:
         return bake_scene(core, options)
-    except core.SceneError as error:
+    except (core.SceneError, bake_lock.Busy) as error:
         complain(error)
         return WRONG_INPUT
     except (core.DivergedError, core.UnstableError) as error:

@@ -279,6 +279,24 @@ def test_a_step_that_becomes_unstable_is_exit_code_3_with_the_frames_before_it(n
     assert (out / "Cloth.checkpoint").is_file()
 
 
+def test_a_second_bake_into_a_folder_is_refused_until_the_first_has_ended(new_blender):
+    path = new_blender.folder / "shot.blend"
+    new_blender.run(make_file, path=path, columns=30, end=5000)
+    caches = new_blender.folder / "boucle_cache" / "shot"
+    for words, folder in ((), caches), (("--out", str(new_blender.folder / "out")), None):
+        folder = folder or Path(words[1])
+        command = [sys.executable, str(ROOT / "scripts" / "bake.py"), str(path), *words]
+        with subprocess.Popen(command, stdout=subprocess.DEVNULL) as first:
+            until = time.monotonic() + 60
+            while time.monotonic() < until and not list(folder.glob("*.pc2")):
+                time.sleep(0.01)
+            done = bake(path, *words, check=2)
+            assert f"is being baked into by process {first.pid}; accepted" in done.stderr
+            first.terminate()
+            assert first.wait(timeout=60) == 130
+        assert not (folder / "boucle.lock").exists()
+
+
 def test_the_exit_code_of_two_cloths_is_that_of_the_first_failure(new_blender):
     path = new_blender.folder / "shot.blend"
     out = new_blender.folder / "out"

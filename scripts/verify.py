@@ -30,7 +30,7 @@ from environment import (
 )
 
 CARGO_RESULT = re.compile(r"^test result: \w+\. (\d+) passed; (\d+) failed; (\d+) ignored")
-PYTHON_SOURCES = ("addon", "scripts", "tests")
+PYTHON_SOURCES = ("addon", "scripts", "tests", "rust/python/boucle_core.pyi")
 RUST_TIMEOUT = 1500.0
 PYTHON_TIMEOUT = 1800.0
 

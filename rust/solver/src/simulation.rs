@@ -123,9 +123,14 @@ impl Simulation {
         &self.cloths[cloth]
     }
 
-    /// The largest stable step (s) of the springs and the wind as they are now, at most a frame; 0 if there is none.
+    /// The largest step (s) that is stable and that every limiter keeps up with, at most a frame; 0 if there is none.
     #[must_use]
     pub fn safe_time_step(&self) -> f64 {
+        self.stable_step().min(self.limited_step())
+    }
+
+    /// The largest stable step (s) of the springs and the wind as they are now, at most a frame; 0 if there is none.
+    fn stable_step(&self) -> f64 {
         let factor = stiffening(&self.cloths, |cloth| self.longest_ratio(cloth));
         let System { air, inverse_masses, .. } = &self.system;
         let fall = self.settings.gravity.norm() * self.frame_duration();
@@ -371,7 +376,7 @@ impl Simulation {
         {
             return allowed(count);
         }
-        let bound = self.safe_time_step();
+        let bound = self.stable_step();
         match asked {
             None => allowed((duration / (AUTO_STEP * bound).min(self.limited_step())).ceil()),
             Some(count) if duration / count <= bound * (1.0 + 1e-9) => allowed(count),

@@ -31,6 +31,8 @@ BoucleError: type[Exception] = getattr(_core, "BoucleError", _NeverRaised)
 """Anything that the module refuses or reports."""
 DivergedError: type[Exception] = getattr(_core, "DivergedError", _NeverRaised)
 """A position left the finite numbers; the state is that of the last good frame."""
+UnstableError: type[Exception] = getattr(_core, "UnstableError", _NeverRaised)
+"""From a frame on the settings would not stay stable; the state is that of the last good frame."""
 InternalError: type[Exception] = getattr(_core, "InternalError", _NeverRaised)
 """A caught panic: the simulation must be thrown away."""
 

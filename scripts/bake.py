@@ -1,7 +1,15 @@
 """Bake a scene or a .blend file without a window.
 
-Exit codes: 0 done; 2 the input is wrong, told in one line; 3 the simulation diverged; 4 the cache cannot be written;
+Exit codes: 0 done; 2 the input is wrong, told in one line; 3 the simulation diverged, or would from
+a frame on, because strained springs need smaller steps than were set; 4 the cache cannot be written;
 130 stopped by the user. After 3, 4 and 130 the frames so far are kept, and after 130 `--resume` goes on.
+
+A .blend with `--out` stays as it is; cloths whose files there would be the same ones are refused. Without `--out` each cloth
+gets its own cache, and the file is saved with its own settings, not those of `--set`, so that it plays the frames; it is
+not saved if there are none.
+
+Ctrl-C (or SIGTERM) is heard at the end of the frame that is being simulated. One bake at a time goes into a folder: another
+one is refused while the first runs.
 """
 
 from __future__ import annotations
@@ -16,6 +24,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NoReturn, Protocol
 
+import bake_lock
 from bake_progress import Progress, progress_on
 
 DONE, FAULT, WRONG_INPUT, DIVERGED, CACHE, STOPPED = 0, 1, 2, 3, 4, 130
@@ -38,6 +47,7 @@ class Bake(Protocol):
 
     SceneError: type[Exception]
     DivergedError: type[Exception]
+    UnstableError: type[Exception]
     CacheError: type[Exception]
 
     def bake(self, scene: str, out: str, **options: object) -> Mapping[str, object]:
@@ -121,7 +131,7 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
 def bake_scene(core: Bake, options: argparse.Namespace) -> int:
     """Bake a TOML scene and return the exit code."""
     out = options.out or str(Path("out") / Path(options.file).stem)
-    with progress_on(options.quiet) as progress:
+    with bake_lock.held(Path(out)), progress_on(options.quiet) as progress:
         report = core.bake(
             options.file,
             out,
@@ -197,10 +207,10 @@ def run(words: Sequence[str]) -> int:
         return WRONG_INPUT
     try:
         return bake_scene(core, options)
-    except core.SceneError as error:
+    except (core.SceneError, bake_lock.Busy) as error:
         complain(error)
         return WRONG_INPUT
-    except core.DivergedError as error:
+    except (core.DivergedError, core.UnstableError) as error:
         complain(f"{error}; the frames before it are kept")
         return DIVERGED
     except core.CacheError as error:

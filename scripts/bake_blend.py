@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 import bake_blend_inside as inside
+import bake_lock
 import embedded
 from bake_progress import Progress, progress_on
 
@@ -58,15 +59,27 @@ def main(
         "overrides": list(overrides),
         "resume": resume,
     }
-    with (
-        tempfile.TemporaryDirectory(prefix="boucle") as folder,
-        stop_request() as stop,
-        ExitStack() as stack,
-    ):
-        teller = Teller(quiet, stack)
-        if blender is None:
-            return run_here(request, Path(folder), teller, stop)
-        return run_in(blender, request, Path(folder), teller, stop)
+    try:
+        with (
+            bake_lock.held(result_folder(request)),
+            tempfile.TemporaryDirectory(prefix="boucle") as folder,
+            stop_request() as stop,
+            ExitStack() as stack,
+        ):
+            teller = Teller(quiet, stack)
+            if blender is None:
+                return run_here(request, Path(folder), teller, stop)
+            return run_in(blender, request, Path(folder), teller, stop)
+    except bake_lock.Busy as busy:
+        return refuse(str(busy))
+
+
+def result_folder(request: Mapping[str, Any]) -> Path:
+    """Where the bake goes: --out, or the file's own cache folder."""
+    if request["out"]:
+        return Path(request["out"])
+    blend = Path(request["path"])
+    return blend.parent / "boucle_cache" / blend.stem
 
 
 def refuse(message: str) -> int:

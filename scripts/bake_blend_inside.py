@@ -13,7 +13,9 @@ import signal
 import sys
 import time
 import tomllib
+import unicodedata
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
 from typing import Any
 
 MODULE = "bl_ext.user_default.boucle"
@@ -41,8 +43,10 @@ def bake_file(request: Mapping[str, Any], tell: Tell, is_stopped: Callable[[], b
     try:
         open_file(request["path"])
         scenes = cloths_by_scene(request["path"])
-        override(request["overrides"])
-        return Baker(request, tell, is_stopped).bake(scenes)
+        if request["out"]:
+            refuse_shared_files([cloth.name for cloth, _ in scenes])
+        own_values = override(request["overrides"])
+        return Baker(request, tell, is_stopped, own_values).bake(scenes)
     except WrongInput as wrong:
         tell({"kind": "complaint", "text": str(wrong)})
         return WRONG_INPUT
@@ -89,10 +93,24 @@ def cloths_by_scene(path: str) -> list[tuple[Any, Any]]:
     return found
 
 
-def override(words: Sequence[str]) -> None:
-    """Set properties of cloths: "OBJECT.property=value", TOML values."""
+def refuse_shared_files(names: Sequence[str]) -> None:
+    """Refuse cloths that would write into each other's files, or into the report of all."""
+    known = {"report": ""}
+    for name in names:
+        other = known.setdefault(file_key(name), name)
+        if other != name:
+            whose = f'those of the cloth "{other}"' if other else "the report of all cloths"
+            raise WrongInput(
+                f'the files of the cloth "{name}" in --out would be {whose}; accepted: cloths whose '
+                "names differ as file names, in more than case, or a bake without --out"
+            )
+
+
+def override(words: Sequence[str]) -> list[tuple[str, str, Any]]:
+    """Set properties of cloths, "OBJECT.property=value" in TOML, and return what they were: object, property, value."""
     import bpy
 
+    own_values = []
     for text in words:
         target, equals, written = text.partition("=")
         name, dot, key = target.strip().rpartition(".")
@@ -104,14 +122,15 @@ def override(words: Sequence[str]) -> None:
             raise WrongInput(
                 f'--set {text}: "{name}" is no Boucle cloth; accepted: {listed(names)}'
             )
-        set_property(obj, key, written, text)
+        own_values.append((name, key, set_property(obj, key, written, text)))
+    return own_values
 
 
-def set_property(obj: Any, key: str, written: str, text: str) -> None:
-    """Set one property, or say what would be accepted: Blender itself would cut a number without a word."""
+def set_property(obj: Any, key: str, written: str, text: str) -> Any:
+    """Set one property and return what it was. What Blender itself would cut without a word is refused."""
     properties = obj.boucle.bl_rna.properties
     settable = [p.identifier for p in properties if not p.is_readonly and not p.is_hidden]
-    settable = [name for name in settable if name not in {"name", "rna_type"}]
+    settable = [name for name in settable if name not in {"name", "rna_type", "enabled"}]
     if key not in settable:
         raise WrongInput(f'--set {text}: "{key}" is no setting; accepted: {listed(settable)}')
     try:
@@ -125,11 +144,14 @@ def set_property(obj: Any, key: str, written: str, text: str) -> None:
         check_range(prop, value, text)
     if prop.type == "BOOLEAN" and not isinstance(value, bool):
         raise WrongInput(f"--set {text}; accepted: true or false")
+    before = getattr(obj.boucle, key)
+    before = tuple(before) if getattr(prop, "is_array", False) else before
     try:
         setattr(obj.boucle, key, value)
     except (TypeError, ValueError) as error:
         reason = str(error).rpartition(": ")[2]
         raise WrongInput(f"--set {text} is not accepted ({' '.join(reason.split())})") from error
+    return before
 
 
 def check_range(prop: Any, value: Any, text: str) -> None:
@@ -154,11 +176,17 @@ class Baker:
     """Bakes the cloths of a file one after another."""
 
     def __init__(
-        self, request: Mapping[str, Any], tell: Tell, is_stopped: Callable[[], bool]
+        self,
+        request: Mapping[str, Any],
+        tell: Tell,
+        is_stopped: Callable[[], bool],
+        own_values: Sequence[tuple[str, str, Any]],
     ) -> None:
         self.request = request
         self.tell = tell
         self.is_stopped = is_stopped
+        self.own_values = own_values
+        """What --set has changed for this bake: object, property, the file's own value."""
         self.out: str | None = request["out"]
         self.bakes: list[Any] = []
         self._reported = time.monotonic()
@@ -177,8 +205,9 @@ class Baker:
                 break
         if self.out:
             self.write_report()
-        else:
-            code = self.save_file() or code
+        elif any(bake.last_frame is not None for bake in self.bakes):
+            saved = self.save_file()
+            code = code or saved
         if code == DONE:
             where = self.out or "the file's own caches"
             count = "1 cloth" if len(names) == 1 else f"{len(names)} cloths"
@@ -194,13 +223,12 @@ class Baker:
         bake = bridge.Bake(cloth, scene, self.options(cloth))
         self.bakes.append(bake)
         self.tell({"kind": "cloth", "text": f"{name}: {len(cloth.data.vertices)} vertices"})
-        steps = bake.steps()
         try:
-            self.pull(bake, steps)
+            with closing(bake.steps()) as steps:
+                self.pull(bake, steps)
             if self.is_stopped():
-                steps.close()
                 return self.complain(bake, GeneratorExit(), STOPPED)
-        except native.DivergedError as error:
+        except (native.DivergedError, native.UnstableError) as error:
             return self.complain(bake, error, DIVERGED)
         except (refusal.CacheRefusal, OSError) as error:
             return self.complain(bake, error, CACHE)
@@ -208,16 +236,19 @@ class Baker:
             return self.complain(bake, error, FAULT)
         except (refusal.Refusal, native.BoucleError) as error:
             return self.complain(bake, error, WRONG_INPUT)
-        if self.out:
-            self.write_rest(bpy.data.objects[name])
         return DONE
 
     def pull(self, bake: Any, steps: Any) -> None:
         """Simulate frame after frame until the end or a request to stop."""
+        has_rest = not self.out
         for step in steps:
-            step.run()
-            if bake.store is None:  # the solver is built, no frame is simulated yet
+            if bake.store is None:
+                step.run()  # the solver is built, no frame is simulated yet
                 continue
+            if not has_rest:
+                self.write_rest(bake.name)
+                has_rest = True
+            step.run()
             first = bake.store.plan.first
             event = {"kind": "frame", "frame": step.frame, "first": first, "last": bake.end}
             self.tell({**event, "seconds": step.seconds})
@@ -225,6 +256,8 @@ class Baker:
                 self.write_report()
             if self.is_stopped():
                 return
+        if not has_rest:  # there was no frame to simulate
+            self.write_rest(bake.name)
 
     def options(self, cloth: Any) -> Any:
         """How to bake one cloth."""
@@ -247,8 +280,11 @@ class Baker:
         self.tell({"kind": "complaint", "text": addon("bridge.bake").outcome(bake, error)})
         return code
 
-    def write_rest(self, cloth: Any) -> None:
+    def write_rest(self, name: str) -> None:
         """The rest mesh as OBJ, in object space as the PC2."""
+        import bpy
+
+        cloth = bpy.data.objects[name]
         positions = addon("bridge.rest").positions(cloth.data)
         faces = [list(face.vertices) for face in cloth.data.polygons]
         path = os.path.join(self.out, f"{file_name(cloth.name)}.obj")
@@ -264,9 +300,11 @@ class Baker:
         self._reported = time.monotonic()
 
     def save_file(self) -> int:
-        """Save the .blend, so that it plays the bake."""
+        """Save the .blend with its own settings, so that it plays the bake."""
         import bpy
 
+        for name, key, value in reversed(self.own_values):
+            setattr(bpy.data.objects[name].boucle, key, value)
         try:
             bpy.ops.wm.save_mainfile()
         except RuntimeError as error:
@@ -278,6 +316,11 @@ class Baker:
 def file_name(name: str) -> str:
     """An object's name as every file system takes it."""
     return re.sub(r'[<>:"/\\|?*\x00-\x1f]', "_", name)
+
+
+def file_key(name: str) -> str:
+    """The same text for names that some file system takes for one: case, ways to write an accent, dots at the end."""
+    return unicodedata.normalize("NFC", file_name(name)).casefold().rstrip(". ")
 
 
 def run_as_script(request_file: str) -> int:

@@ -20,7 +20,8 @@ ROOT = Path(__file__).resolve().parent.parent
 SCRIPTS = ROOT / "scripts"
 OUT = ROOT / "out"
 VENV = ROOT / ".venv"
-VENV_BPY42 = ROOT / ".venv-bpy42"
+OTHER_BLENDERS = ("4.2", "5.0")
+"""Versions of Blender that tests run beside the one in .venv; each has a virtual environment of its own."""
 WHEELS = ROOT / "target" / "wheels"
 PYTHON_VERSION = (3, 11)
 
@@ -87,6 +88,11 @@ def shorten(words: list[str]) -> str:
 def venv_program(venv: Path, name: str) -> Path:
     """Path of a program inside a virtual environment."""
     return venv / "Scripts" / f"{name}.exe" if os.name == "nt" else venv / "bin" / name
+
+
+def blender_venv(version: str) -> Path:
+    """The virtual environment that holds a version of Blender other than that of .venv."""
+    return ROOT / f".venv-bpy{version.replace('.', '')}"
 
 
 def rust_version() -> str:
@@ -230,13 +236,14 @@ def install_module(venv: Path, digest: str) -> None:
         stamp.write_text(digest, encoding="utf-8")
 
 
-def set_up(*, bpy42: bool = False) -> None:
-    """Bring .venv (and, on request, .venv-bpy42) to the state of the sources."""
+def set_up(*, other_blenders: bool = False) -> None:
+    """Bring .venv (and, on request, those of the other Blender versions) to the state of the sources."""
     require_rust()
     with exclusive():
         digest = sources_digest()
         ensure_venv(VENV, "requirements.txt")
         install_module(VENV, digest)
-        if bpy42:
-            ensure_venv(VENV_BPY42, "requirements-bpy42.txt")
-            install_module(VENV_BPY42, digest)
+        for version in OTHER_BLENDERS if other_blenders else ():
+            venv = blender_venv(version)
+            ensure_venv(venv, f"requirements{venv.name.removeprefix('.venv')}.txt")
+            install_module(venv, digest)

@@ -19,8 +19,8 @@ from paper.view import Pictures, Plotted, Rendered
 
 ROOT = Path(__file__).resolve().parent.parent
 README_PICTURES = ROOT / "scripts" / "pictures"
-FOR_README = (3, 4, 5, 8)
-"""Figures that the README shows."""
+FOR_README = range(2, 9)
+"""Figures that the README shows: all of them."""
 
 
 def parser() -> argparse.ArgumentParser:

@@ -13,12 +13,13 @@ import zipfile
 from pathlib import Path
 
 from environment import (
+    OTHER_BLENDERS,
     OUT,
     ROOT,
     SCRIPTS,
     VENV,
-    VENV_BPY42,
     Failed,
+    blender_venv,
     build_wheel,
     ensure_venv,
     exclusive,
@@ -54,7 +55,7 @@ def package() -> None:
     with heading("Build and validate the zip with Blender's tool"):
         zips = build_zips(staging, folder)
     for file in zips:
-        for venv in (VENV, VENV_BPY42):
+        for venv in (VENV, *map(blender_venv, OTHER_BLENDERS)):
             if venv_program(venv, "python").exists():
                 with heading(f"Install {file.name} in the Blender of {venv.name}"):
                     try_install(file, venv)

@@ -14,11 +14,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from environment import (
+    OTHER_BLENDERS,
     OUT,
     ROOT,
     VENV,
-    VENV_BPY42,
     Failed,
+    blender_venv,
     ensure_venv,
     exclusive,
     heading,
@@ -30,7 +31,7 @@ from environment import (
 )
 
 CARGO_RESULT = re.compile(r"^test result: \w+\. (\d+) passed; (\d+) failed; (\d+) ignored")
-PYTHON_SOURCES = ("addon", "scripts", "tests")
+PYTHON_SOURCES = ("addon", "scripts", "tests", "rust/python/boucle_core.pyi")
 RUST_TIMEOUT = 1500.0
 PYTHON_TIMEOUT = 1800.0
 
@@ -81,7 +82,7 @@ def check() -> None:
 
 def test(arguments: list[str]) -> bool:
     """Run the Rust tests, then pytest with `arguments`; print the closing line; True if all is well."""
-    set_up(bpy42=True)
+    set_up(other_blenders=True)
     count = Count()
     with heading("Rust tests"):
         run_cargo_test(count)
@@ -121,14 +122,13 @@ def run_pytest(count: Count, arguments: list[str]) -> None:
     report.unlink(missing_ok=True)
     python = venv_program(VENV, "python")
     command = [python, "-m", "pytest", f"--junitxml={report}", *(arguments or ["tests"])]
+    pythons = {}
+    for version in OTHER_BLENDERS:
+        name = f"BOUCLE_BPY{version.replace('.', '')}_PYTHON"
+        own = venv_program(blender_venv(version), "python")
+        pythons[name] = os.environ.get(name, str(own))
     try:
-        run(
-            command,
-            timeout=PYTHON_TIMEOUT,
-            BOUCLE_BPY42_PYTHON=os.environ.get(
-                "BOUCLE_BPY42_PYTHON", str(venv_program(VENV_BPY42, "python"))
-            ),
-        )
+        run(command, timeout=PYTHON_TIMEOUT, **pythons)
     except Failed as failed:
         failure = str(failed)
     else:

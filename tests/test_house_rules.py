@@ -167,6 +167,15 @@ def test_a_wrong_import_is_found(path, line):
     assert len(wrong_imports(Path(path), line)) == 1
 
 
+def test_every_python_file_is_under_ruff():
+    import verify
+
+    python = {path for path in tracked() if path.suffix in {".py", ".pyi"}}
+    assert ROOT / "rust" / "python" / "boucle_core.pyi" in {ROOT / path for path in python}
+    covered = [Path(source) for source in verify.PYTHON_SOURCES]
+    assert [p for p in python if not any(p == c or c in p.parents for c in covered)] == []
+
+
 def test_files_are_short():
     long = {}
     for folder in ("rust", "addon", "scripts", "tests"):

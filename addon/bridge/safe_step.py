@@ -1,4 +1,4 @@
-"""The largest stable time step of a cloth, in words; computed once per state of its settings."""
+"""The largest time step that a cloth's springs and its limiter bear, in words; computed once per state of its settings."""
 
 from __future__ import annotations
 

@@ -208,6 +208,7 @@ def bake(
     Raises:
         Refusal: Resume is not possible, or a file cannot be written; earlier frames stay.
         DivergedError: A position left the finite numbers; earlier frames stay.
+        UnstableError: The next frame would not be stable with these settings; earlier frames stay.
     """
     plan = store.plan
     world = points.empty("d", 3 * plan.vertex_count)

@@ -36,14 +36,7 @@ class Report:
 
     def as_dict(self) -> dict[str, Any]:
         """The whole report."""
-        return {
-            **self.head,
-            "cloths": [self.cloth],
-            "frames": self.frames,
-            "total_seconds": sum(float(row["seconds"] or 0.0) for row in self.frames),
-            "peak_memory_bytes": peak_memory(),
-            "bake": self.record,
-        }
+        return {**_whole(self.head, [self.cloth], self.frames), "bake": self.record}
 
     def write(self, path: str) -> None:
         """Replace the report file."""
@@ -62,11 +55,19 @@ def joined(reports: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     for report in reports:
         for row in report["frames"]:
             rows.setdefault(row["frame"], []).append(row)
+    head = {key: value for key, value in reports[0].items() if key != "bake"}
+    cloths = [cloth for report in reports for cloth in report["cloths"]]
+    return _whole(head, cloths, [_joined_row(rows[frame]) for frame in sorted(rows)])
+
+
+def _whole(
+    head: Mapping[str, Any], cloths: list[dict[str, Any]], frames: list[dict[str, Any]]
+) -> dict[str, Any]:
     return {
-        **{key: reports[0][key] for key in reports[0] if key not in {"cloths", "frames", "bake"}},
-        "cloths": [cloth for report in reports for cloth in report["cloths"]],
-        "frames": [_joined_row(rows[frame]) for frame in sorted(rows)],
-        "total_seconds": sum(report["total_seconds"] for report in reports),
+        **head,
+        "cloths": cloths,
+        "frames": frames,
+        "total_seconds": sum(float(row["seconds"] or 0.0) for row in frames),
         "peak_memory_bytes": peak_memory(),
     }
 

@@ -48,6 +48,6 @@ class SolverProperties:
     )  # fmt: skip
     safe_step: StringProperty(
         name="Safe Time Step",
-        description="The largest time step that keeps these springs stable",
+        description="The largest time step that keeps these springs stable and that the limiter keeps up with",
         get=_read_safe_step, options=FIXED, override=OVERRIDABLE,
     )  # fmt: skip

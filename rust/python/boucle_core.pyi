@@ -2,7 +2,8 @@
 
 Every array argument is any C-contiguous object with the buffer protocol (array.array, numpy array, memoryview); numpy is
 not needed. Where (n, 3) stands, a flat array of 3 n numbers is taken too; where int32 stands, any integers of 4 or 8 bytes.
-A simulation is used by one thread at a time. Work runs with the interpreter released. The same input gives the same bits for any number of threads.
+A simulation is used by one thread at a time. Work runs with the interpreter released. The same input gives the same bits
+for any number of threads.
 """
 
 from collections.abc import Buffer, Callable, Mapping, Sequence
@@ -21,6 +22,11 @@ class DivergedError(BoucleError, ArithmeticError):
 
     frame: int
     vertex: int
+
+class UnstableError(BoucleError, ArithmeticError):
+    """From this frame on the settings would not stay stable. Earlier frames are kept."""
+
+    frame: int
 
 class CacheError(BoucleError, OSError):
     """A result cannot be written or read (disk full, no permission). Earlier frames are kept."""
@@ -56,7 +62,7 @@ class Simulation:
     def cloth_names(self) -> list[str]: ...
     @property
     def safe_time_step(self) -> float:
-        """Largest stable step (s) of these springs and this integrator, damping included; 0 if there is none."""
+        """Largest step (s) that is stable with this integrator and that the limiter keeps up with; 0 if there is none."""
 
     @property
     def substeps(self) -> int:
@@ -68,9 +74,13 @@ class Simulation:
         """Put the vertices at positions (m), float32 or float64 (n, 3), at rest; the rest lengths stay."""
 
     def set_pin_targets(self, cloth: int, targets: Buffer) -> None:
-        """Where pins go: positions (m), float32 or float64 (n, 3), for *all* vertices of the cloth, of which only the
-        pinned are read; reached in a straight line at the end of the next frame. Where the scene moves the pins of this
-        cloth itself (`motion`), the scene's targets hold."""
+        """Say where pins go: they reach it in a straight line at the end of the next frame.
+
+        Args:
+            cloth: Its number.
+            targets: Positions (m), float32 or float64 (n, 3), for *all* vertices of the cloth, of which only the pinned
+                are read. Where the scene moves the pins of this cloth itself (`motion`), the scene's targets hold.
+        """
 
     def release_pins(self, cloth: int, vertices: Sequence[int] | None = None) -> None:
         """Let pinned vertices (all if None) go, keeping their velocity."""
@@ -79,7 +89,7 @@ class Simulation:
         """Move on by one frame and return its certificate: a row of `frames` in report.json, without `seconds`.
 
         Raises:
-            DivergedError: The state is that of the last good frame.
+            DivergedError, UnstableError: The state is that of the last good frame.
         """
 
     def certificate(self) -> dict[str, float | int | str | None]:
@@ -95,8 +105,11 @@ class Simulation:
         """Fill out, float32 (n,), with the largest strain of the edges at each vertex."""
 
     def read_springs(self, cloth: int) -> tuple[bytes, bytes, bytes, bytes, bytes]:
-        """The spring list: ends int32 (s, 2); kind uint8 (s,) 0 stretch 1 shear 2 bend; rest length float64 (s,) (m);
-        stiffness float64 (s,) (N/m), as the limiter has it now; damping float64 (s,) (N·s/m)."""
+        """Return the springs as native-endian bytes, in this order.
+
+        Ends int32 (s, 2); kind uint8 (s,) 0 stretch 1 shear 2 bend; rest length float64 (s,) (m); stiffness float64 (s,)
+        (N/m), as the limiter has it now; damping float64 (s,) (N·s/m).
+        """
 
     def checkpoint(self) -> bytes:
         """The whole state, versioned and checksummed."""

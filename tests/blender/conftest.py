@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-VERSIONS = ("4.5", "4.2", *(["5.0"] if "BOUCLE_BPY50_PYTHON" in os.environ else []))
-"""5.0 is tested where the environment names a Python that has it."""
+VERSIONS = ("4.5", "4.2", "5.0", *(["5.2"] if "BOUCLE_BPY52_PYTHON" in os.environ else []))
+"""5.2 needs Python 3.13: it is tested where the environment names one that has it."""
 SECONDS = 120
 """A scenario takes seconds; Blender that hangs must not hold up the tests."""
 
@@ -22,14 +22,15 @@ def python_of(version):
     """The Python that has this bpy: for 4.5 our own; for others a venv of its own, because one Python holds one bpy."""
     if version == VERSIONS[0]:
         return sys.executable
-    named = os.environ.get(f"BOUCLE_BPY{version.replace('.', '')}_PYTHON")
+    number = version.replace(".", "")
+    named = os.environ.get(f"BOUCLE_BPY{number}_PYTHON")
     if named:
         return named
-    venv = ROOT / ".venv-bpy42"
+    venv = ROOT / f".venv-bpy{number}"
     python = venv / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
     if not python.is_file():
         subprocess.run([sys.executable, "-m", "venv", str(venv)], check=True)
-        requirements = ROOT / "scripts" / "requirements-bpy42.txt"
+        requirements = ROOT / "scripts" / f"requirements-bpy{number}.txt"
         install = [str(python), "-m", "pip", "install", "--quiet", "--requirement"]
         subprocess.run([*install, str(requirements)], check=True)
     return str(python)
@@ -56,7 +57,7 @@ class Blender:
         self.version = version
         self.folder = folder
         self.output = ""
-        self._python = python_of(version)
+        self.python = python_of(version)
         resources = folder / "user"
         extensions = resources / "extensions" / "user_default"
         extensions.mkdir(parents=True)
@@ -78,7 +79,7 @@ class Blender:
         result = self.folder / "result.json"
         result.unlink(missing_ok=True)
         command = [
-            self._python,
+            self.python,
             str(Path(__file__).with_name("child.py")),
             inspect.getfile(function),
             function.__name__,

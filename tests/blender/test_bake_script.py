@@ -25,6 +25,30 @@ def make_file(path, columns, end, cloths="1"):
     bpy.ops.wm.save_as_mainfile(filepath=path)
 
 
+def make_named_file(path, names):
+    import bpy
+    from cloths import add_cloth
+
+    for name in names.split("|"):
+        add_cloth(end=4).name = name
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+
+
+def settings_of(path):
+    import bpy
+
+    bpy.ops.wm.open_mainfile(filepath=path)
+    cloth = bpy.data.objects["Cloth"]
+    cache = cloth.modifiers.get("Boucle Cache")
+    values = {key: getattr(cloth.boucle, key) for key in ("shear", "limiter", "substeps")}
+    return {
+        **values,
+        "wind_velocity": list(cloth.boucle.wind_velocity),
+        "status": cloth.boucle.status,
+        "played": cache.filepath if cache else "",
+    }
+
+
 def make_empty_file(path):
     import bpy
 
@@ -45,12 +69,12 @@ def look(path):
     return out
 
 
-def bake(*words, check=0):
+def bake(*words, check=0, failures=1):
     command = [sys.executable, str(ROOT / "scripts" / "bake.py"), *map(str, words)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=180, check=False)
     assert done.returncode == check, done.stdout + done.stderr
-    if check == 2:
-        assert "Traceback" not in done.stderr
+    assert "Traceback" not in done.stderr
+    if check == 2 and failures == 1:
         ours = [line for line in done.stderr.splitlines() if line.startswith("bake.py: ")]
         assert len(ours) == 1, done.stderr
     return done
@@ -77,6 +101,7 @@ def test_a_folder_gets_pc2_obj_report_and_checkpoint_and_the_file_stays_as_it_wa
     assert [cloth["name"] for cloth in report["cloths"]] == ["Cloth", "Cloth.001"]
     assert [row["frame"] for row in report["frames"]] == list(range(1, 11))
     assert report["scene"].endswith("shot.blend")
+    assert report["hash_algorithm"] == "xxh3-64"
     first = struct.unpack("<192f", (out / "Cloth.pc2").read_bytes()[32 : 32 + 12 * 64])
     vertices = [
         float(word)
@@ -102,6 +127,43 @@ def test_without_a_folder_each_cloth_gets_its_own_cache_and_the_file_plays_it(ne
     data = cache.read_bytes()[32 + 7 * 12 * 64 : 32 + 8 * 12 * 64]
     expected = struct.unpack("<192f", data)
     assert max(abs(a - b) for a, b in zip(positions, expected, strict=True)) < 1e-6
+
+
+def test_the_files_settings_stay_its_own_and_it_is_saved_only_with_frames_to_play(new_blender):
+    path = new_blender.folder / "shot.blend"
+    new_blender.run(make_file, path=path, columns=8, end=6)
+    untouched, own = path.read_bytes(), new_blender.run(settings_of, path=path)
+    overrides = ["Cloth.shear=40", "Cloth.limiter='none'", "Cloth.wind_velocity=[1, 2, 3]"]
+    bake(path, "--quiet", "--frames", "9:3", "--set", *overrides, check=2)
+    bake(path, "--quiet", "--set", *overrides, "Cloth.substeps=1", check=2)
+    assert path.read_bytes() == untouched
+    bake(path, "--quiet", "--set", *overrides)
+    after = new_blender.run(settings_of, path=path)
+    assert after["played"] and "outdated, changed since" in after["status"]
+    assert {**after, "played": "", "status": ""} == {**own, "status": ""}
+    wild = ["Cloth.stretch=1e6", "Cloth.substeps=1", "Cloth.allow_unstable=true"]
+    bake(path, "--quiet", "--set", *wild, "Cloth.frame_end=20", "Cloth.limiter='none'", check=3)
+    after = new_blender.run(settings_of, path=path)
+    assert {**after, "played": "", "status": ""} == {**own, "status": ""}
+    assert "aked: frames 1 to " in after["status"]
+
+
+def test_cloths_that_would_share_files_are_refused(new_blender):
+    path = new_blender.folder / "shot.blend"
+    out = new_blender.folder / "out"
+    shared = {
+        "Cloth|CLOTH": '"Cloth"',
+        "report": "the report of all cloths",
+        "a:b|a?b": '"a:b"',
+        "end.|end": '"end',
+        "caf\u00e9|cafe\u0301": '"caf',
+    }
+    for names, other in shared.items():
+        new_blender.run(make_named_file, path=path, names=names)
+        done = bake(path, "--out", out, check=2)
+        assert "accepted: cloths whose names differ as file names" in done.stderr
+        assert other in done.stderr
+        assert not out.exists()
 
 
 def test_frames_keeps_a_range_and_simulates_from_the_start(new_blender):
@@ -139,6 +201,7 @@ def test_a_bake_that_was_interrupted_or_killed_resumes_bit_equal(new_blender):
     assert stop(signal.SIGINT, 5) == 130
     kept = samples(cache)[-1]
     assert 5 <= kept < 80
+    assert (part / "Cloth.obj").read_bytes() == (whole / "Cloth.obj").read_bytes()
     assert len(json.loads((part / "report.json").read_text())["frames"]) == kept
     assert stop(signal.SIGKILL, kept + 5) == -signal.SIGKILL
     body = cache.read_bytes()
@@ -193,9 +256,67 @@ def test_divergence_is_exit_code_3_and_a_folder_that_cannot_be_is_4(new_blender)
     done = bake(path, "--out", out, "--set", *wild, "Cloth.limiter='none'", check=3)
     assert "diverged at frame" in done.stderr and "are kept" in done.stderr
     assert 2 <= samples(out / "Cloth.pc2")[-1] < 20
+    assert (out / "Cloth.obj").read_text().count("\nv ") == 64
     (new_blender.folder / "file").write_text("in the way")
     done = bake(path, "--out", new_blender.folder / "file" / "out", check=4)
     assert "cannot be written" in done.stderr
+
+
+def test_a_step_that_becomes_unstable_is_exit_code_3_with_the_frames_before_it(new_blender):
+    path = new_blender.folder / "shot.blend"
+    new_blender.run(make_file, path=path, columns=8, end=60)
+    out = new_blender.folder / "out"
+    soft = ["Cloth.stretch=20", "Cloth.shear=5", "Cloth.bend=0.5", "Cloth.limiter='stiffen'"]
+    words = [path, "--out", out, "--quiet", "--set", *soft]
+    refused = bake(*words, "Cloth.substeps=1", check=2).stderr
+    least = refused.partition("at least ")[2].partition(" ")[0]
+    done = bake(*words, f"Cloth.substeps={least}", check=3)
+    kept = samples(out / "Cloth.pc2")[-1]
+    assert 1 < kept < 60
+    assert f"frame {kept + 1} cannot be simulated: solver: the step of " in done.stderr
+    assert f"frames up to {kept} are kept" in done.stderr
+    assert len(json.loads((out / "report.json").read_text())["frames"]) == kept
+    assert (out / "Cloth.checkpoint").is_file()
+
+
+def test_a_second_bake_into_a_folder_is_refused_until_the_first_has_ended(new_blender):
+    path = new_blender.folder / "shot.blend"
+    new_blender.run(make_file, path=path, columns=30, end=5000)
+    caches = new_blender.folder / "boucle_cache" / "shot"
+    for words, folder in ((), caches), (("--out", str(new_blender.folder / "out")), None):
+        folder = folder or Path(words[1])
+        command = [sys.executable, str(ROOT / "scripts" / "bake.py"), str(path), *words]
+        with subprocess.Popen(command, stdout=subprocess.DEVNULL) as first:
+            until = time.monotonic() + 60
+            while time.monotonic() < until and not list(folder.glob("*.pc2")):
+                time.sleep(0.01)
+            done = bake(path, *words, check=2)
+            assert f"is being baked into by process {first.pid}; accepted" in done.stderr
+            first.terminate()
+            assert first.wait(timeout=60) == 130
+        assert not (folder / "boucle.lock").exists()
+
+
+def test_the_exit_code_of_two_cloths_is_that_of_the_first_failure(new_blender):
+    path = new_blender.folder / "shot.blend"
+    out = new_blender.folder / "out"
+    new_blender.run(make_file, path=path, columns=8, end=10, cloths=2)
+
+    def wild(name):
+        values = ["stretch=1e6", "substeps=1", "allow_unstable=true", "limiter='none'"]
+        return [f"{name}.{value}" for value in values]
+
+    def refused(name):
+        return [f"{name}.substeps=1"]
+
+    both = [*wild("Cloth"), *refused("Cloth.001")]
+    done = bake(path, "--out", out, "--set", *both, check=3)
+    assert done.stderr.index("diverged at frame") < done.stderr.index("stability bound")
+    both = [*refused("Cloth"), *wild("Cloth.001")]
+    done = bake(path, "--out", out, "--set", *both, check=2, failures=2)
+    assert done.stderr.index("stability bound") < done.stderr.index("diverged at frame")
+    bake(path, "--out", out, "--set", *wild("Cloth"), check=3)
+    assert samples(out / "Cloth.001.pc2")[-1] == 10, "the other one is baked all the same"
 
 
 def stand_in_blender(folder, python):
@@ -220,17 +341,20 @@ def test_another_blender_bakes_in_background_and_refuses_files_from_a_newer_one(
     blender.run(make_file, path=path, columns=40, end=60)
     out = blender.folder / "out"
     python_42 = os.environ.get("BOUCLE_BPY42_PYTHON", str(ROOT / ".venv-bpy42" / "bin" / "python"))
-    old = stand_in_blender(blender.folder, python_42)
-    if blender.version == "4.5":
-        done = bake(path, "--out", out, "--blender", old, check=2)
-        assert "is from Blender 4.5 and this is Blender 4.2" in done.stderr
+    other = stand_in_blender(blender.folder, python_42)
+    if blender.version != "4.2":
+        done = bake(path, "--out", out, "--blender", other, check=2)
+        from_4 = "is from Blender 4.5 and this is Blender 4.2"
+        assert (
+            from_4 if blender.version == "4.5" else "cannot be opened by Blender 4.2"
+        ) in done.stderr
         assert "--blender PATH" in done.stderr
-        return
-    done = bake(path, "--out", out, "--blender", old)
+        other = stand_in_blender(blender.folder, blender.python)
+    done = bake(path, "--out", out, "--blender", other)
     assert samples(out / "Cloth.pc2")[-1] == 60
     assert "1 cloth baked" in done.stdout
     command = [sys.executable, str(ROOT / "scripts" / "bake.py"), str(path)]
-    command += ["--out", str(blender.folder / "stopped"), "--blender", str(old)]
+    command += ["--out", str(blender.folder / "stopped"), "--blender", str(other)]
     cache = blender.folder / "stopped" / "Cloth.pc2"
     with subprocess.Popen(command, stdout=subprocess.DEVNULL) as process:
         until = time.monotonic() + 60
@@ -239,5 +363,5 @@ def test_another_blender_bakes_in_background_and_refuses_files_from_a_newer_one(
         process.terminate()
         assert process.wait(timeout=60) == 130
     assert 1 <= samples(cache)[-1] < 60
-    bake(path, "--out", cache.parent, "--blender", old, "--resume")
+    bake(path, "--out", cache.parent, "--blender", other, "--resume")
     assert cache.read_bytes() == (out / "Cloth.pc2").read_bytes()

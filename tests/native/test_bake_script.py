@@ -1,14 +1,20 @@
 """scripts/bake.py from its command line to its exit code."""
 
+import functools
 import os
 import pty
 import resource
 import signal
 import struct
+import subprocess
+import sys
 import termios
+from pathlib import Path
 
 import numpy as np
 import pytest
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 
 
 def pc2(path):
@@ -218,6 +224,22 @@ def test_a_divergence_ends_with_3_and_keeps_the_frames_before_it(
     assert pc2(tmp_path / "out" / "sheet.pc2")[1].shape[0] == len(kept)
 
 
+def test_a_step_that_becomes_unstable_ends_with_3_and_names_the_frame(
+    run_bake, small_scene, tmp_path, read_report
+):
+    soft = "cloth.0.springs={ stretch = 20, shear = 5, bend = 0.5, limiter = 'stiffen' }"
+    words = [small_scene, "--out", "out", "--quiet", "--set", "scene.frames=[1, 60]", soft]
+    line = complaint(run_bake(*words, "solver.substeps=1"), 2)
+    least = line.partition("at least ")[2].partition(" ")[0]
+    line = complaint(run_bake(*words, f"solver.substeps={least}"), 3)
+    kept = read_report(tmp_path / "out")["frames"]
+    assert f"frame {len(kept) + 1} cannot be simulated: solver: the step of " in line
+    assert line.endswith("; the frames before it are kept\n")
+    assert len(kept) > 1
+    assert pc2(tmp_path / "out" / "sheet.pc2")[1].shape[0] == len(kept)
+    assert (tmp_path / "out" / "boucle.checkpoint").exists()
+
+
 @pytest.mark.parametrize(
     "prepare",
     [
@@ -290,3 +312,50 @@ def test_a_bake_that_is_stopped_ends_with_130_in_one_line(
     assert said == "bake.py: stopped; the frames so far are kept, --resume goes on\n"
     kept = read_report(tmp_path / "out")["frames"]
     assert len(kept) == len(pc2(tmp_path / "out" / "curtain.pc2")[1]) > 1
+
+
+def test_a_second_bake_into_a_folder_is_refused_until_the_first_has_ended(
+    start_bake, run_bake, scenes, small_scene, tmp_path
+):
+    words = [scenes / "curtain.toml", "--out", "out", "--set", "scene.frames=[1, 100000]"]
+    first = start_bake(*words)
+    assert first.stdout.readline().startswith("frame ")
+    held = (tmp_path / "out" / "curtain.obj").read_bytes()
+    line = complaint(run_bake(small_scene, "--out", "out"), 2)
+    assert f"out is being baked into by process {first.pid}; accepted: another folder" in line
+    assert not (tmp_path / "out" / "sheet.pc2").exists()
+    assert (tmp_path / "out" / "curtain.obj").read_bytes() == held
+    assert run_bake(small_scene, "--out", "other").returncode == 0
+    first.kill()
+    assert first.wait() == -signal.SIGKILL
+    assert (tmp_path / "out" / "boucle.lock").exists(), "nobody could take it away"
+    assert run_bake(small_scene, "--out", "out").returncode == 0
+    assert not (tmp_path / "out" / "boucle.lock").exists()
+
+
+def test_a_refused_bake_leaves_no_folder_behind(run_bake, small_scene, tmp_path):
+    complaint(run_bake(small_scene, "--out", "a/b/c", "--set", "cloth.0.density=-1"), 2)
+    assert not (tmp_path / "a").exists()
+
+
+def test_of_many_bakes_at_once_the_lock_lets_one_in(tmp_path):
+    """Processes that take and give back the lock as fast as they can never hold it two at a time."""
+    script = (
+        "import sys, pathlib, bake_lock\n"
+        "folder, done = pathlib.Path('held'), 0\n"
+        "while done < 200:\n"
+        "    try:\n"
+        "        with bake_lock.held(folder):\n"
+        "            (folder / 'inside').touch(exist_ok=False)\n"
+        "            (folder / 'inside').unlink()\n"
+        "            done += 1\n"
+        "    except bake_lock.Busy:\n"
+        "        continue\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(SCRIPTS)}
+    command = [sys.executable, "-c", script]
+    start = functools.partial(subprocess.Popen, command, cwd=tmp_path, env=environment)
+    processes = [start(stderr=subprocess.PIPE) for _ in range(4)]
+    said = [process.communicate(timeout=60)[1] for process in processes]
+    assert [process.returncode for process in processes] == [0, 0, 0, 0], said
+    assert not list((tmp_path / "held").glob("*"))

@@ -126,6 +126,16 @@ def test_equation_6_raises_k_by_the_ratio_of_the_length_to_rest_and_the_others_l
         assert tracks[name]["largest_stiffness"] == 500.0
 
 
+def test_the_readme_shows_or_links_every_figure_as_a_small_picture():
+    folder = FIGURES.parent / "pictures"
+    readme = (FIGURES.parents[1] / "README.md").read_text(encoding="utf-8")
+    names = {f"figure{number}_{name}.png" for number, name in NAMES.items()}
+    assert {path.name for path in folder.glob("figure*.png")} == names
+    for name in names:
+        assert f"(scripts/pictures/{name})" in readme
+        assert (folder / name).stat().st_size < 150_000
+
+
 def test_wrong_use_is_told_in_one_line_and_exit_code_2(tmp_path):
     pytest.importorskip("matplotlib")
     occupied = tmp_path / "file"

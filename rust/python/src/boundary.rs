@@ -16,6 +16,7 @@ use pyo3::types::{PyDict, PyTuple, PyType};
 struct Exceptions {
     scene: Py<PyType>,
     diverged: Py<PyType>,
+    unstable: Py<PyType>,
     cache: Py<PyType>,
     internal: Py<PyType>,
 }
@@ -43,16 +44,20 @@ pub(crate) fn raise(py: Python<'_>, error: &Error) -> PyErr {
     };
     let kind = match error {
         Error::Diverged { .. } => &exceptions.diverged,
+        Error::Unstable { .. } => &exceptions.unstable,
         Error::Cache(_) => &exceptions.cache,
         _ => &exceptions.scene,
     };
     let exception = PyErr::from_type(kind.bind(py).clone(), error.to_string());
-    let Error::Diverged { frame, vertex, .. } = error else { return exception };
     let value = exception.value(py);
-    match value.setattr("frame", frame).and_then(|()| value.setattr("vertex", vertex)) {
-        Ok(()) => exception,
-        Err(other) => other,
-    }
+    let told = match error {
+        Error::Diverged { frame, vertex, .. } => {
+            value.setattr("frame", frame).and_then(|()| value.setattr("vertex", vertex))
+        }
+        Error::Unstable { frame, .. } => value.setattr("frame", frame),
+        _ => Ok(()),
+    };
+    told.err().unwrap_or(exception)
 }
 
 /// The exception that tells a fault of our own.
@@ -89,6 +94,11 @@ pub(crate) fn add_exceptions(module: &Bound<'_, PyModule>) -> PyResult<()> {
             py.get_type::<PyArithmeticError>(),
             "A position left the finite numbers: \"diverged at frame F, vertex V of cloth NAME\". \
              Earlier frames are kept.",
+        )?,
+        unstable: add(
+            "UnstableError",
+            py.get_type::<PyArithmeticError>(),
+            "From this frame on the settings would not stay stable. Earlier frames are kept.",
         )?,
         cache: add(
             "CacheError",

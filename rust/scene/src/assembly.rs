@@ -58,13 +58,16 @@ impl Assembly {
     /// Moves on by one frame, pins included.
     ///
     /// # Errors
-    /// [`Error::Diverged`]; the state is then that of the last good frame.
+    /// [`Error::Diverged`] or [`Error::Unstable`]; the state is then that of the last good frame.
     pub fn advance(&mut self) -> Result<Certificate> {
         let frame = self.simulation.frame();
         for (cloth, track) in self.tracks.iter().enumerate() {
             track.prepare(&mut self.simulation, cloth, frame, self.first_frame);
         }
-        self.simulation.advance().map_err(solver)
+        self.simulation.advance().map_err(|error| match solver(error) {
+            Error::Input(reason) => Error::Unstable { frame: frame + 1, reason },
+            other => other,
+        })
     }
 }
 

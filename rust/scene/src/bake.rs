@@ -67,7 +67,8 @@ pub enum Ending {
 /// Bakes. After every frame `observe` is told how far it is, and may stop the bake by [`ControlFlow::Break`].
 ///
 /// # Errors
-/// [`Error::Input`] before anything is written; [`Error::Diverged`] and [`Error::Cache`] with the frames so far kept.
+/// [`Error::Input`] before anything is written; [`Error::Diverged`], [`Error::Unstable`] and [`Error::Cache`] with the
+/// frames so far kept.
 pub fn bake(
     request: &Request,
     observe: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
@@ -154,11 +155,11 @@ impl Bake {
         })
     }
 
-    /// Simulates one frame. A divergence leaves a checkpoint of the last good one.
+    /// Simulates one frame. A frame that cannot be reached leaves a checkpoint of the last good one.
     fn advance(&mut self) -> Result<Certificate> {
         self.frame_began = Instant::now();
         self.assembly.advance().inspect_err(|_| {
-            // The divergence is what the user must hear of, even if the disk is full as well.
+            // What became of the cloth is what the user must hear of, even if the disk is full as well.
             drop(self.write_checkpoint());
         })
     }

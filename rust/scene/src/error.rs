@@ -21,6 +21,13 @@ pub enum Error {
         /// The cloth's name.
         cloth: String,
     },
+    /// From here on the settings would not stay stable; the frames before it are kept.
+    Unstable {
+        /// The frame that could not be simulated.
+        frame: i32,
+        /// Why, and what would be accepted.
+        reason: String,
+    },
     /// A result cannot be written or read; the frames before it are kept.
     Cache(String),
 }
@@ -50,12 +57,12 @@ impl Error {
         }
     }
 
-    /// The exit code of a bake that ends so: 2 wrong input, 3 diverged, 4 cache.
+    /// The exit code of a bake that ends so: 2 wrong input, 3 diverged or about to, 4 cache.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input(_) => 2,
-            Self::Diverged { .. } => 3,
+            Self::Diverged { .. } | Self::Unstable { .. } => 3,
             Self::Cache(_) => 4,
         }
     }
@@ -68,6 +75,9 @@ impl fmt::Display for Error {
             Self::Diverged { frame, vertex, cloth } => f.write_str(&one_line(&format!(
                 "diverged at frame {frame}, vertex {vertex} of cloth \"{cloth}\""
             ))),
+            Self::Unstable { frame, reason } => {
+                f.write_str(&one_line(&format!("frame {frame} cannot be simulated: {reason}")))
+            }
         }
     }
 }

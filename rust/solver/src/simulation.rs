@@ -133,9 +133,14 @@ impl Simulation {
         &self.cloths[cloth]
     }
 
-    /// The largest stable step (s) of the springs and the wind as they are now, at most a frame; 0 if there is none.
+    /// The largest step (s) that is stable and that every limiter keeps up with, at most a frame; 0 if there is none.
     #[must_use]
     pub fn safe_time_step(&self) -> f64 {
+        self.stable_step().min(self.limited_step())
+    }
+
+    /// The largest stable step (s) of the springs and the wind as they are now, at most a frame; 0 if there is none.
+    fn stable_step(&self) -> f64 {
         let Some(rule) = explicit(self.settings.integrator) else {
             return self.frame_duration();
         };
@@ -384,6 +389,9 @@ impl Simulation {
 
     /// The longest step (s) that every cloth's limiter keeps up with.
     fn limited_step(&self) -> f64 {
+        if self.method.is_implicit() {
+            return f64::INFINITY;
+        }
         let gravity = self.settings.gravity.norm();
         let steps = self.cloths.iter().map(|cloth| Limit::longest_step(cloth, gravity));
         steps.fold(f64::INFINITY, f64::min)
@@ -405,17 +413,16 @@ impl Simulation {
             let integrator = self.settings.integrator.name();
             Err(Error::TooManySubsteps { substeps: count, limit: MOST_SUBSTEPS, integrator })
         };
-        let is_implicit = explicit(self.settings.integrator).is_none();
-        if let (Some(memory), None) = (self.method.memory(), asked) {
+                if let (Some(memory), None) = (self.method.memory(), asked) {
             let change = self.pins.largest_change(&self.state, duration);
             return Ok(self.accuracy.plan(memory.substeps, change, duration));
         }
         if let Some(count) = asked
-            && (self.settings.allow_unstable || is_implicit)
+            && (self.settings.allow_unstable || self.method.is_implicit())
         {
             return allowed(count);
         }
-        let bound = self.safe_time_step();
+        let bound = self.stable_step();
         match asked {
             None => allowed((duration / (AUTO_STEP * bound).min(self.limited_step())).ceil()),
             Some(count) if duration / count <= bound * (1.0 + 1e-9) => allowed(count),

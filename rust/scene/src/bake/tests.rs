@@ -223,6 +223,34 @@ fn a_divergence_keeps_the_frames_before_it() {
     assert_eq!(again.expect_err("it diverges again"), error);
 }
 
+/// Equation 6 makes strained springs stiffer, until the steps that rest allows are too long.
+#[test]
+fn a_step_that_becomes_unstable_names_its_frame_and_keeps_those_before_it() {
+    let place = Place::new(SCENE);
+    let soft = [
+        "cloth.sheet.springs={ stretch = 5, shear = 1, bend = 0.1, limiter = \"stiffen\" }",
+        "scene.frames=[1, 60]",
+    ];
+    let with = |substeps: &str| {
+        let overrides = [soft[0], soft[1], substeps].map(str::to_owned).to_vec();
+        Request { overrides, ..place.request("out") }
+    };
+    let run = |request: &Request| bake(request, &mut |_| ControlFlow::Continue(()));
+    let refusal = run(&with("solver.substeps=1")).expect_err("too few at rest").to_string();
+    let least = refusal.split("at least ").nth(1).and_then(|rest| rest.split(' ').next());
+    let request = with(&format!("solver.substeps={}", least.expect("a number of substeps")));
+    let error = run(&request).expect_err("too few when stretched");
+    assert_eq!(error.exit_code(), 3);
+    let Error::Unstable { frame, .. } = error else { panic!("{error}") };
+    assert!(error.to_string().starts_with(&format!("frame {frame} cannot be simulated: solver: ")));
+    assert!(frame > 2, "{error}");
+    assert_eq!(place.hashes("out").last().map(|row| row.0), Some(i64::from(frame - 1)));
+    let (header, _) = pc2::read(&place.0.path().join("out/sheet.pc2")).expect("a cache");
+    assert_eq!(i64::from(header.sample_count), i64::from(frame - 1));
+    assert!(place.0.path().join("out").join(checkpoint::FILE_NAME).exists());
+    assert_eq!(run(&Request { resume: true, ..request }).expect_err("it does again"), error);
+}
+
 #[test]
 fn names_that_cannot_name_a_file_are_refused() {
     for name in ["a/b", "..", ".hidden", "a\\\\b", "ends ", "a:b", "tab\\t"] {

@@ -62,6 +62,26 @@ fn the_numpy_demonstration_moves_as_the_plain_method_does() {
     }
 }
 
+/// Vertices of the demonstration and where they are after two seconds: `tests/native/test_scene_files.py` expects
+/// the same of `tests/scenes/numpy_demo.toml`.
+const AFTER_TWO_SECONDS: [(usize, [f64; 3]); 3] = [
+    (0, [-0.029_236_6, -0.285_243_6, -0.000_407_3]),
+    (13, [2.191_530_9, -0.058_801_5, 0.907_303_8]),
+    (90, [1.192_957_4, 0.871_240_1, -0.006_641_3]),
+];
+
+#[test]
+fn the_numpy_demonstration_is_where_its_scene_file_is_expected_to_be() {
+    let plain = demonstration();
+    let mut simulation = demonstration_in_the_solver(&plain);
+    run(&mut simulation, 20);
+    let positions = simulation.positions(0);
+    for (vertex, expected) in AFTER_TWO_SECONDS {
+        let error = (positions[vertex] - Vector::from(expected)).norm();
+        assert!(error < 1e-6, "vertex {vertex}: {:?}", positions[vertex]);
+    }
+}
+
 /// z = 0.90: stable. Air damping at 5/s leaves no motion after 30 s; the blown corner stands downwind.
 #[test]
 fn the_numpy_demonstration_comes_to_rest_downwind() {

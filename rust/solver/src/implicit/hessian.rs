@@ -98,11 +98,8 @@ fn tangent(
     let length = (x * x + y * y + z * z).sqrt().max(f32::MIN_POSITIVE);
     let ratio = length / rest_length.max(f32::MIN_POSITIVE);
     let is_stiffer = ratio > law.stiffen_beyond as f32;
-    let (tension, slope) = if is_stiffer {
-        (ratio - 1.0, 2.0 * ratio - 1.0)
-    } else {
-        (1.0 - 1.0 / ratio, 1.0)
-    };
+    let (tension, slope) =
+        if is_stiffer { (ratio - 1.0, 2.0 * ratio - 1.0) } else { (1.0 - 1.0 / ratio, 1.0) };
     let tension = tension.max(0.0);
     let mut along = stiffness * (slope - tension).max(0.0);
     let mut across = stiffness * tension;

@@ -141,7 +141,7 @@ impl Implicit {
                 break;
             }
             self.iterations += iterations;
-            self.correct(formula.step);
+            self.correct(system, formula.step);
         }
         self.memory.error += self.error(state, h);
         self.memory.before.copy_from(state);
@@ -190,7 +190,16 @@ impl Implicit {
                 }
             }
         }
-        state.position.copy_from(&at.position);
+        let inertia = |particle: usize| inertia(system, &self.air, particle, self.memory.step);
+        let shifts = self.pieces.shifts(&self.still.position, &moved, inertia);
+        for (axis, positions) in state.position.0.iter_mut().enumerate() {
+            for (particle, (x, pulled)) in
+                positions.iter_mut().zip(&*at.position.0[axis]).enumerate()
+            {
+                let shift = shifts.as_ref().map_or(0.0, |shifts| shifts.of(particle)[axis]);
+                *x = pulled + shift;
+            }
+        }
     }
 
     fn formula(&self, h: f64) -> Formula {
@@ -250,21 +259,16 @@ impl Implicit {
         taut.add_forces(&mut residual.position);
         gradients.take_residual(&residual.position);
         for (i, inertia) in hessian.inertia.iter_mut().enumerate() {
-            *inertia = if inverse_masses[i] > 0.0 {
-                let damping = system.air_damping[i] + system.air.damping_of(i, air);
-                (masses[i] * by_square + damping / h) as f32
-            } else {
-                0.0
-            };
+            *inertia = self::inertia(system, air, i, h) as f32;
         }
         hessian.freeze(&system.layout, &at.position, h);
     }
 
     /// Moves the guess by the solution.
-    fn correct(&mut self, h: f64) {
+    fn correct(&mut self, system: &System, h: f64) {
         let solution = &self.gradients.solution;
         self.taut.follow(solution, &mut self.memory.tensions);
-        let inertia = |particle: usize| f64::from(self.hessian.inertia[particle]);
+        let inertia = |particle: usize| inertia(system, &self.air, particle, h);
         let shifts = self.pieces.shifts(&self.residual.position, solution, inertia);
         for axis in 0..3 {
             let position = self.at.position.0[axis].iter_mut();
@@ -300,4 +304,13 @@ impl Implicit {
         }
         (sum / state.len() as f64).sqrt()
     }
+}
+
+/// `m/h² + ka/h` (kg/s²) of a particle, wind included; 0 of a pinned one.
+fn inertia(system: &System, air: &AirScratch, particle: usize, h: f64) -> f64 {
+    if system.is_pinned(particle) {
+        return 0.0;
+    }
+    let damping = system.air_damping[particle] + system.air.damping_of(particle, air);
+    system.masses[particle] / (h * h) + damping / h
 }

@@ -8,8 +8,4 @@ impl Field {
     pub(crate) fn zeros(count: usize) -> Self {
         Self(std::array::from_fn(|_| vec![0.0; count]))
     }
-
-    pub(crate) fn len(&self) -> usize {
-        self.0[0].len()
-    }
 }

@@ -8,6 +8,7 @@ mod determinism;
 mod drag;
 mod dynamics;
 mod forces;
+mod implicit;
 mod integrators;
 mod invariance;
 mod lattice;

@@ -63,7 +63,8 @@ impl Ldlt {
     }
 
     /// Numbers stored, the padding included.
-    pub(crate) fn size(&self) -> usize {
+    #[cfg(test)]
+    fn size(&self) -> usize {
         self.factor.numbers.len()
     }
 }

@@ -16,9 +16,9 @@ const COUNTS: [u32; 10] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48];
 /// Steps of a first frame.
 const FIRST: u32 = 4;
 
-/// The error allowed, as a part of tolerance times size: with the default tolerance, a sheet that swings freely
-/// takes 4 steps a frame, which keeps its amplitude within 1 %.
-const SCALE: f64 = 0.2;
+/// The error allowed, as a part of tolerance times size: with the default tolerance, a sheet that falls and swings from
+/// an edge takes 6 steps a frame, which keep it within 2 % of its length (root mean square) for a second.
+const SCALE: f64 = 0.02;
 
 /// The same for the way that a pin is off its old course after a step: seen in a few vertices only.
 const PIN_SCALE: f64 = 10.0;

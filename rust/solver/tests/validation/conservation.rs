@@ -70,8 +70,10 @@ fn a_free_sheet_keeps_its_momentum_under_every_rule_and_damping() {
         SpringMaterial { damping, damping_law: axial, ..springs() },
     ];
     for integrator in IntegratorKind::ALL {
+        // Implicit rules round a velocity to that of a position over the step.
+        let h = if IntegratorKind::EXPLICIT.contains(&integrator) { 1e-4 } else { 1e-2 };
         for material in &materials {
-            let [linear, _] = drift(integrator, material.clone(), 1e-4);
+            let [linear, _] = drift(integrator, material.clone(), h);
             assert!(linear < 1e-11, "{integrator:?}: {linear:e} in 0.1 s");
         }
     }

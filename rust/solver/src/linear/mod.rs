@@ -5,8 +5,12 @@ mod dissection;
 mod field;
 mod laplacian;
 mod ldlt;
+mod multigrid;
+#[cfg(test)]
+mod problems;
 
 pub(crate) use conjugate_gradient::{ConjugateGradient, Inverse, Operator, Stop};
 pub(crate) use field::Field;
 pub(crate) use laplacian::{Graph, Laplacian};
 pub(crate) use ldlt::Ldlt;
+pub(crate) use multigrid::Multigrid;

@@ -13,7 +13,6 @@ pub enum IntegratorKind {
     /// `x += h v` with the old velocity, then `v += h a`.
     ForwardEuler,
     /// `v += h a`, then `x += h v` with the new velocity (the paper).
-    #[default]
     SymplecticEuler,
     /// Velocity Verlet: half a kick, a drift, half a kick.
     Verlet,
@@ -26,6 +25,7 @@ pub enum IntegratorKind {
     /// Implicit Euler, linearised: stable at any step, damps.
     ImplicitEuler,
     /// BDF2, linearised: stable at any step, damps far less.
+    #[default]
     Bdf2,
 }
 

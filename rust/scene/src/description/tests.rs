@@ -245,7 +245,10 @@ const WRONG_VALUES: &[(&str, &str)] = &[
     ("solver.time_step=-1", "solver.time_step = -1.0; accepted: above 0"),
     ("solver.time_step=1e-12", "solver.time_step = 1e-12; accepted: at least"),
     ("solver.allow_unstable=1", "solver.allow_unstable = 1; accepted: true or false"),
-    ("solver.integrator=rk5", "solver.integrator = \"rk5\"; accepted: \"bdf2\", \"implicit_euler\", "),
+    (
+        "solver.integrator=rk5",
+        "solver.integrator = \"rk5\"; accepted: \"bdf2\", \"implicit_euler\", ",
+    ),
     ("solver.tolerance=0", "solver.tolerance = 0.0; accepted: 1e-6 to 1"),
     ("solver.tolerance=1.5", "solver.tolerance = 1.5; accepted: 1e-6 to 1"),
     ("solver.tolerance=nan", "solver.tolerance = NaN; accepted: 1e-6 to 1"),

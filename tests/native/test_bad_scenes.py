@@ -55,7 +55,12 @@ SCENES = [
     ("stretch nan", "500.0", "nan", "cloth.flag.springs.stretch (N/m) is NaN"),
     ("stretch inf", "500.0", "inf", "cloth.flag.springs.stretch (N/m) is inf"),
     ("stretch huge", "500.0", "1e300", "cloth.flag.springs.stretch (N/m) is 1"),
-    ("damping too strong to step", "500.0", "500.0\ndamping = 1e9", "solver: symplectic_euler needs"),
+    ("damping too strong to step", 'limiter = "project"\n\n[solver]', 'damping = 1e9\n[solver]\nintegrator = "verlet"',
+     "solver: verlet needs"),
+    ("tolerance too large", '"auto"', '"auto"\ntolerance = 2.0', "solver.tolerance = 2.0; accepted: 1e-6 to 1"),
+    ("tolerance zero", '"auto"', '"auto"\ntolerance = 0.0', "solver.tolerance = 0.0; accepted: 1e-6 to 1"),
+    ("unknown linear solver", '"auto"', '"auto"\nlinear_solver = "lu"', 'solver.linear_solver = "lu"; accepted: "auto"'),
+    ("unknown stiffness", "500.0", '500.0\nstiffness_from = "cloth"', 'springs.stiffness_from = "cloth"; accepted: "springs"'),
     ("location huge", OBJ, OBJ + "\ntransform = { location = [1e30, 0, 0] }", "transform.location.0"),
     # negative, zero, out of range
     ("density negative", DENSITY, "density = -0.2", "cloth.flag.density = -0.2; accepted: above 0"),
@@ -71,7 +76,7 @@ SCENES = [
     ("frames reversed", "[1, 3]", "[3, 1]", "scene.frames = [3, 1]; accepted: the first frame before"),
     ("frames beyond", "[1, 3]", "[1, 99999999]", "scene.frames.1 = 99999999; accepted"),
     ("substeps zero", '"auto"', "0", 'solver.substeps = 0; accepted: "auto"'),
-    ("substeps unstable", '"auto"', "1", "solver: the step of"),
+    ("substeps unstable", '"auto"', '1\nintegrator = "symplectic_euler"', "solver: the step of"),
     ("time step zero", 'substeps = "auto"', "time_step = 0", "solver.time_step = 0"),
     ("time step tiny", 'substeps = "auto"', "time_step = 1e-30", "solver.time_step = 1e-30"),
     # wrong types

@@ -24,6 +24,15 @@ def test_a_simulation_starts_at_rest_at_the_first_frame_of_its_scene(sheet):
     assert simulation.vertex_count(0) == 36
     assert np.array_equal(positions_of(simulation).ravel(), np.array(sheet.positions))
     assert simulation.certificate()["max_strain"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_safe_time_step_is_a_frame_where_any_step_is_stable_and_else_it_is_kept(sheet):
+    scene = json.loads(sheet.scene())
+    simulation = boucle_core.Simulation(json.dumps(scene), [sheet.mesh()])
+    assert simulation.safe_time_step == pytest.approx(1 / 24)
+    assert simulation.substeps > 0
+    scene["solver"] = {"integrator": "symplectic_euler"}
+    simulation = boucle_core.Simulation(json.dumps(scene), [sheet.mesh()])
     assert 0.0 < simulation.safe_time_step < 1 / 24
     assert simulation.substeps >= 1 / 24 / simulation.safe_time_step
 

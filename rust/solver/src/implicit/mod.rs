@@ -50,12 +50,12 @@ pub(crate) enum Rule {
 /// Iterations of Newton at the most; the limiters mend what a snap leaves after them.
 const NEWTON: usize = 3;
 
-/// Conjugate gradients stop early: the error of the step is far larger than theirs. The floor is that of the first
-/// Newton iteration.
-const STOP: Stop = Stop { tolerance: 0.05, least_iterations: 6, most_iterations: 200 };
+/// Conjugate gradients stop early: the error of the step is far larger than theirs. Falling and swinging for 20 frames,
+/// a sheet of 64² ends 45 mm (root mean square) from where 48 steps a frame lead, and 39 mm with twice the iterations.
+const STOP: Stop = Stop { tolerance: 0.1, least_iterations: 3, most_iterations: 200 };
 
 /// What of the residual, measured by P⁻¹, may be left at the end of a step.
-const LEFT: f64 = 0.1;
+const LEFT: f64 = 0.2;
 
 /// An implicit integrator and all that it keeps between steps.
 #[derive(Debug)]

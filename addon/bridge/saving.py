@@ -142,8 +142,11 @@ def _copy(source: CacheFiles, target: CacheFiles) -> None:
 def _each(source: CacheFiles, target: CacheFiles, act: object) -> None:
     try:
         os.makedirs(os.path.dirname(target.pc2), exist_ok=True)
+        replaces = os.path.isfile(source.pc2)
         for here, there in zip(source, target, strict=True):
             if os.path.isfile(here):
                 act(here, there)
+            elif replaces and os.path.isfile(there):  # it belongs to the bake that was here
+                os.remove(there)
     except OSError as error:
         raise cannot_write(target.pc2, error) from error

@@ -19,7 +19,7 @@ def of_bake(obj: bpy.types.Object, frame: int) -> Points | None:
     """The strain that the bake keeps of a frame; beyond its ends, of the first or last one, as the bake is played."""
     path = cache.played_path(obj)
     record = cache.record_of(obj)
-    if not path or not record:
+    if not path or not record or cache.problem(obj):
         return None
     count = len(obj.data.vertices)
     file = cache_paths.files_of(path).strain

@@ -88,7 +88,7 @@ class Simulation:
     def release_pins(self, cloth: int, vertices: Sequence[int] | None = None) -> None:
         """Let pinned vertices (all if None) go, keeping their velocity."""
 
-    def advance(self) -> dict[str, float | int | str | None | list[dict[str, object]]]:
+    def advance(self) -> dict[str, float | int | str | list[dict[str, object]] | None]:
         """Move on by one frame and return its certificate: a row of `frames` in report.json, without `seconds`.
 
         Where edges are overstretched the row counts them (`overstretched_count`) and names the worst 8 (`overstretched`:
@@ -98,7 +98,7 @@ class Simulation:
             DivergedError, UnstableError: The state is that of the last good frame.
         """
 
-    def certificate(self) -> dict[str, float | int | str | None | list[dict[str, object]]]:
+    def certificate(self) -> dict[str, float | int | str | list[dict[str, object]] | None]:
         """The certificate of the present state."""
 
     def read_positions(self, cloth: int, out: Buffer) -> None:

@@ -98,7 +98,7 @@ fn tangent(
     let length = (x * x + y * y + z * z).sqrt().max(f32::MIN_POSITIVE);
     let ratio = length / rest_length.max(f32::MIN_POSITIVE);
     // Where a diagonal has no spring the ratio is beyond all bounds, and 0 times infinity would be NaN.
-    let is_stiffer = (rest_length > 0.0) & (ratio > law.stiffen_beyond as f32);
+    let is_stiffer = rest_length > 0.0 && ratio > law.stiffen_beyond as f32;
     let (tension, slope) = if is_stiffer {
         (ratio - 1.0, 2.0 * ratio - 1.0)
     } else {

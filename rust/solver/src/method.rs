@@ -44,9 +44,9 @@ impl Method {
     }
 
     /// Follows a change of which particles are pinned.
-    pub(crate) fn follow_pins(&mut self) {
+    pub(crate) fn follow_pins(&mut self, system: &System) {
         if let Self::Implicit(implicit) = self {
-            implicit.follow_pins();
+            implicit.follow_pins(system);
         }
     }
 

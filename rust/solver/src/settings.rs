@@ -42,6 +42,16 @@ impl IntegratorKind {
         Self::Bdf2,
     ];
 
+    /// The explicit ones.
+    pub const EXPLICIT: [Self; 6] = [
+        Self::ForwardEuler,
+        Self::SymplecticEuler,
+        Self::Verlet,
+        Self::Leapfrog,
+        Self::Midpoint,
+        Self::Rk4,
+    ];
+
     /// The name in scene files and panels.
     #[must_use]
     pub fn name(self) -> &'static str {

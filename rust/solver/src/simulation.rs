@@ -384,10 +384,11 @@ impl Simulation {
         for particle in 0..self.state.len() {
             self.system.set_pinned(particle, false);
         }
-        self.method.follow_pins();
+
         for particle in self.pins.particles() {
             self.system.set_pinned(particle as usize, true);
         }
+        self.method.follow_pins(&self.system);
         let placed = self.cloths.iter().zip(&self.bases);
         let inverse_masses = &self.system.inverse_masses;
         self.limits =
@@ -421,7 +422,7 @@ impl Simulation {
             let integrator = self.settings.integrator.name();
             Err(Error::TooManySubsteps { substeps: count, limit: MOST_SUBSTEPS, integrator })
         };
-                if let (Some(memory), None) = (self.method.memory(), asked) {
+        if let (Some(memory), None) = (self.method.memory(), asked) {
             let change = self.pins.largest_change(&self.state, duration);
             return Ok(self.accuracy.plan(memory.substeps, change, duration));
         }

@@ -99,11 +99,8 @@ fn tangent(
     let ratio = length / rest_length.max(f32::MIN_POSITIVE);
     // Where a diagonal has no spring the ratio is beyond all bounds, and 0 times infinity would be NaN.
     let is_stiffer = rest_length > 0.0 && ratio > law.stiffen_beyond as f32;
-    let (tension, slope) = if is_stiffer {
-        (ratio - 1.0, 2.0 * ratio - 1.0)
-    } else {
-        (1.0 - 1.0 / ratio, 1.0)
-    };
+    let (tension, slope) =
+        if is_stiffer { (ratio - 1.0, 2.0 * ratio - 1.0) } else { (1.0 - 1.0 / ratio, 1.0) };
     let tension = tension.max(0.0);
     let mut along = stiffness * (slope - tension).max(0.0);
     let mut across = stiffness * tension;

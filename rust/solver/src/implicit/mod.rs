@@ -24,6 +24,7 @@
 
 mod hessian;
 mod history;
+mod momentum;
 mod preconditioner;
 mod substeps;
 mod taut;
@@ -36,6 +37,7 @@ use crate::system::{Motion, Rate, System};
 use hessian::Hessian;
 use history::Formula;
 pub(crate) use history::Memory;
+use momentum::Pieces;
 use preconditioner::Preconditioner;
 pub(crate) use substeps::Accuracy;
 use taut::{Taut, WithTaut};
@@ -71,6 +73,7 @@ pub(crate) struct Implicit {
     preconditioner: Preconditioner,
     hessian: Hessian,
     taut: Taut,
+    pieces: Pieces,
     gradients: ConjugateGradient,
     /// Base position, and the target in the place of velocities.
     base: State,
@@ -88,6 +91,14 @@ pub(crate) struct Implicit {
 impl Implicit {
     pub(crate) fn new(rule: Rule, cloths: &[Cloth], system: &System, state: &State) -> Self {
         let count = state.len();
+        let bases = cloths.iter().scan(0, |next, cloth| {
+            let base = *next;
+            *next += cloth.positions.len() as u32;
+            Some(base)
+        });
+        let springs = cloths.iter().zip(bases);
+        let springs = springs
+            .flat_map(|(cloth, base)| cloth.springs.iter().map(move |spring| (spring, base)));
         let taut = Taut::new(cloths, system.gravity.norm());
         Self {
             rule,
@@ -95,6 +106,7 @@ impl Implicit {
             preconditioner: Preconditioner::new(cloths),
             hessian: Hessian::new(&system.layout, count),
             taut,
+            pieces: Pieces::new(count, springs),
             gradients: ConjugateGradient::new(count),
             base: State::zeros(count),
             at: State::zeros(count),
@@ -106,8 +118,9 @@ impl Implicit {
     }
 
     /// Forgets what depends on which particles are pinned.
-    pub(crate) fn follow_pins(&mut self) {
+    pub(crate) fn follow_pins(&mut self, system: &System) {
         self.preconditioner.forget();
+        self.pieces.follow_pins(|particle| system.is_pinned(particle));
     }
 
     /// Moves `state` by one step of h seconds.
@@ -251,13 +264,18 @@ impl Implicit {
     fn correct(&mut self, h: f64) {
         let solution = &self.gradients.solution;
         self.taut.follow(solution, &mut self.memory.tensions);
+        let inertia = |particle: usize| f64::from(self.hessian.inertia[particle]);
+        let shifts = self.pieces.shifts(&self.residual.position, solution, inertia);
         for axis in 0..3 {
             let position = self.at.position.0[axis].iter_mut();
             let velocity = self.at.velocity.0[axis].iter_mut();
             let base = self.base.position.0[axis].iter();
-            for (((x, v), dx), base) in position.zip(velocity).zip(&solution.0[axis]).zip(base) {
-                if *dx != 0.0 {
-                    *x += f64::from(*dx);
+            let moves = solution.0[axis].iter().zip(base).enumerate();
+            for ((x, v), (particle, (dx, base))) in position.zip(velocity).zip(moves) {
+                let shift = shifts.as_ref().map_or(0.0, |shifts| shifts.of(particle)[axis]);
+                let dx = f64::from(*dx) + shift;
+                if dx != 0.0 {
+                    *x += dx;
                     *v = (*x - base) / h;
                 }
             }

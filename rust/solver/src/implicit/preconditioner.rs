@@ -34,7 +34,15 @@ impl Preconditioner {
             }
         }
         let graph = Graph::new(positions.len(), &pairs);
-        Self { graph, pairs, springs, positions, factored: None, step: 0.0, matrix: Laplacian::default() }
+        Self {
+            graph,
+            pairs,
+            springs,
+            positions,
+            factored: None,
+            step: 0.0,
+            matrix: Laplacian::default(),
+        }
     }
 
     /// The inverse for steps of h' seconds.

@@ -109,7 +109,8 @@ impl Taut {
                 *tension = if *last == 0.0 && squared <= edge.allowed * edge.allowed {
                     0.0
                 } else {
-                    (last + stiffer * edge.kappa * (squared.sqrt() - edge.allowed)).clamp(0.0, stiffer * edge.most)
+                    (last + stiffer * edge.kappa * (squared.sqrt() - edge.allowed))
+                        .clamp(0.0, stiffer * edge.most)
                 };
             }
         });

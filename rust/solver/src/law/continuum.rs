@@ -92,7 +92,9 @@ fn areas(mesh: &Mesh, positions: &[Vector], springs: &[Spring]) -> Vec<f64> {
 fn opposite_corners(mesh: &Mesh) -> HashMap<(u32, u32), u32> {
     let triangles = mesh.faces().filter(|corners| corners.len() == 3);
     triangles
-        .flat_map(|corners| (0..3).map(|i| ((corners[i], corners[(i + 1) % 3]), corners[(i + 2) % 3])))
+        .flat_map(|corners| {
+            (0..3).map(|i| ((corners[i], corners[(i + 1) % 3]), corners[(i + 2) % 3]))
+        })
         .collect()
 }
 
@@ -131,7 +133,8 @@ mod tests {
         let positions = (0..columns * rows).map(|i| {
             let (c, r) = (i % columns, i / columns);
             let is_inner = c > 0 && r > 0 && c + 1 < columns && r + 1 < rows;
-            let shift = |k: u64| if is_inner { jitter * scattered(2 * u64::from(i) + k) } else { 0.0 };
+            let shift =
+                |k: u64| if is_inner { jitter * scattered(2 * u64::from(i) + k) } else { 0.0 };
             let x = (f64::from(c) + shift(0)) * size[0] / f64::from(cells[0]);
             let y = (f64::from(r) + shift(1)) * size[1] / f64::from(cells[1]);
             Vector::new(x, y, 0.0)

@@ -84,7 +84,8 @@ impl ConjugateGradient {
         inverse: &mut dyn Inverse,
         stop: Stop,
     ) -> u32 {
-        let Self { residual, solution, preconditioned, direction, product, partial, reference } = self;
+        let Self { residual, solution, preconditioned, direction, product, partial, reference } =
+            self;
         for axis in &mut solution.0 {
             axis.fill(0.0);
         }

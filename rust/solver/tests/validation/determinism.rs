@@ -6,7 +6,9 @@ use boucle_solver::{
     SpringMaterial, StepSize, Wind, WindLaw,
 };
 
-use crate::sheets::{cloth, grid_mesh, grid_positions, material, run, scattered, shaken, sheet};
+use crate::sheets::{
+    classic, cloth, grid_mesh, grid_positions, material, run, scattered, shaken, sheet,
+};
 
 /// Materials that differ in the terms of their law.
 fn materials() -> Vec<SpringMaterial> {
@@ -66,7 +68,7 @@ fn scene(material: &SpringMaterial, settings: &Settings) -> Simulation {
 fn settings(integrator: IntegratorKind, threads: usize) -> Settings {
     // For rules without a stable step too: what matters is the bits.
     let step_size = StepSize::Substeps(20);
-    Settings { integrator, step_size, allow_unstable: true, threads, ..Settings::default() }
+    Settings { integrator, step_size, allow_unstable: true, threads, ..classic() }
 }
 
 #[test]

@@ -5,7 +5,7 @@ use boucle_solver::{
     IntegratorKind, Mass, Region, Settings, Simulation, SpringMaterial, Wind, WindLaw,
 };
 
-use crate::sheets::{G, assert_close, in_wind, launched, material, run, sheet, steps_of};
+use crate::sheets::{G, assert_close, classic, in_wind, launched, material, run, sheet, steps_of};
 
 const DOWN: Vector = Vector::new(0.0, 0.0, -G);
 
@@ -74,7 +74,7 @@ fn auto_steps_bear_a_gale_and_a_dense_flow() {
             region: Region::Everywhere,
         };
         let cloth = sheet([8, 8], 0.1, &Mass::Density(0.1), material([1.0, 0.5, 0.1]), &[]);
-        let settings = Settings { gravity: Vector::zeros(), threads: 1, ..Settings::default() };
+        let settings = Settings { gravity: Vector::zeros(), threads: 1, ..classic() };
         let mut simulation = in_wind(cloth, vec![wind.clone()], settings);
         for frame in 0..48 {
             let result = simulation.advance();
@@ -90,7 +90,7 @@ fn auto_steps_bear_a_gale_and_a_dense_flow() {
 #[test]
 fn auto_steps_bear_a_sheet_that_is_thrown_through_a_dense_medium() {
     let cloth = sheet([8, 8], 0.1, &Mass::Density(0.1), material([1.0, 0.5, 0.1]), &[]);
-    let settings = Settings { gravity: DOWN, threads: 1, ..Settings::default() };
+    let settings = Settings { gravity: DOWN, threads: 1, ..classic() };
     let velocities = vec![Vector::new(0.0, 0.0, -2.0); 64];
     let mut simulation = launched(cloth, vec![still_air(1000.0)], settings, &velocities);
     for _ in 0..48 {

@@ -7,8 +7,8 @@ use boucle_solver::{
 
 use crate::reference::{CHAINS, Table};
 use crate::sheets::{
-    G, assert_close, farthest, launched, mass_on_spring, material, network, run, sheet, simulation,
-    spring, steps_of,
+    G, assert_close, classic, farthest, launched, mass_on_spring, material, network, run, sheet,
+    simulation, spring, steps_of,
 };
 
 /// 1e-12 of the fall: the rounding of a thousand additions. The springs are soft, for forward Euler to keep their
@@ -81,7 +81,7 @@ fn a_pendulum_on_a_stiff_spring_swings_with_the_period_of_its_amplitude() {
             fps: 200.0,
             integrator: IntegratorKind::Rk4,
             threads: 1,
-            ..Settings::default()
+            ..classic()
         };
         let mut simulation = simulation(cloth, settings);
         let swing = record(&mut simulation, 2000, |now| now.positions(0)[1].x);
@@ -144,7 +144,7 @@ fn the_first_swing_of_a_hanging_strip_has_the_chains_frequency() {
             fps: 500.0,
             integrator: IntegratorKind::Verlet,
             threads: 1,
-            ..Settings::default()
+            ..classic()
         };
         let mut simulation = simulation(cloth, settings);
         simulation.set_positions(0, &swung);

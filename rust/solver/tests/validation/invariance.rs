@@ -8,7 +8,7 @@ use boucle_solver::{
 use nalgebra::{Matrix3, Rotation3};
 
 use crate::sheets::{
-    cloth, farthest, grid_mesh, grid_positions, in_wind, material, run, scattered, shaken,
+    classic, cloth, farthest, grid_mesh, grid_positions, in_wind, material, run, scattered, shaken,
 };
 
 /// A change of the scene: x becomes `turn * x + shift`.
@@ -101,7 +101,7 @@ fn final_positions_of(
         gravity: change.turn * Vector::new(0.0, -9.81, 0.0),
         integrator: scene.integrator,
         threads: 1,
-        ..Settings::default()
+        ..classic()
     };
     let mut simulation = in_wind(cloth, vec![wind], settings);
     if let Some(start) = start {

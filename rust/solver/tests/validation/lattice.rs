@@ -5,7 +5,8 @@ use boucle_solver::{Cloth, IntegratorKind, Mass, Settings, SpringKind, StepSize}
 
 use crate::reference::{LATTICES, Table};
 use crate::sheets::{
-    assert_close, grid_positions, material, network, run, sheet, simulation, spring, steps_of,
+    assert_close, classic, grid_positions, material, network, run, sheet, simulation, spring,
+    steps_of,
 };
 
 /// Energy (J) of a lattice, 1 m apart, under the strains e11, e22 and e12.
@@ -99,7 +100,7 @@ fn a_pulled_lattice_is_as_stiff_and_as_narrow_as_the_table_says() {
             fps: 0.1,
             step_size: StepSize::Auto,
             threads: 1,
-            ..Settings::default()
+            ..classic()
         };
         let mut simulation = simulation(pulled_lattice(ks, kd), settings);
         run(&mut simulation, 40);

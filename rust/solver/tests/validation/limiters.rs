@@ -5,7 +5,7 @@ use boucle_solver::{
     Cloth, Limiter, Mass, Region, Settings, Simulation, SpringMaterial, StepSize, Wind, WindLaw,
 };
 
-use crate::sheets::{G, grid_mesh, grid_positions, in_wind, network, simulation, spring};
+use crate::sheets::{G, classic, grid_mesh, grid_positions, in_wind, network, simulation, spring};
 
 /// What is promised over the rate at a frame's end: 0.1 percentage points.
 const PROMISE: f64 = 1e-3;
@@ -16,7 +16,7 @@ fn hung_sheet(side: u32, material: SpringMaterial) -> Simulation {
 }
 
 fn hung_sheet_in_steps(side: u32, material: SpringMaterial, step_size: StepSize) -> Simulation {
-    let settings = Settings { perturbation: 1e-6, step_size, ..Settings::default() };
+    let settings = Settings { perturbation: 1e-6, step_size, ..classic() };
     simulation(hung_cloth(side, material), settings)
 }
 
@@ -82,7 +82,7 @@ fn papers_chain(limiter: Limiter) -> Simulation {
         (0..19).map(|i| boucle_solver::Spring { damping: 1.0, ..spring([i, i + 1], 0.1, 500.0) });
     let material = SpringMaterial { damping: [1.0; 3], limiter, ..SpringMaterial::default() };
     let cloth = network(positions, springs.collect(), vec![0.1; 20], &[0], material);
-    simulation(cloth, Settings::default())
+    simulation(cloth, classic())
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn project_holds_the_rate_with_moving_pins_and_wind() {
         law: WindLaw::Vertex { coefficient: 1e-3 },
         region: Region::Everywhere,
     };
-    let settings = Settings { perturbation: 1e-6, ..Settings::default() };
+    let settings = Settings { perturbation: 1e-6, ..classic() };
     let mut sheet = in_wind(hung_cloth(32, material(Limiter::Project)), vec![wind], settings);
     let rest = sheet.cloth(0).positions.clone();
     for frame in 1..=48 {
@@ -185,7 +185,7 @@ fn project_keeps_the_momentum_of_a_free_sheet() {
     let mesh = grid_mesh(12, 12);
     let mass = Mass::PerVertex(0.01);
     let cloth = Cloth::from_mesh("free", mesh, rest, &mass, material, vec![]);
-    let settings = Settings { gravity: Vector::new(0.0, 0.0, -G), ..Settings::default() };
+    let settings = Settings { gravity: Vector::new(0.0, 0.0, -G), ..classic() };
     let mut sheet = simulation(cloth.expect("a sheet"), settings);
     // Drawn out by 40 %, so that every row is limited as it springs back.
     for at in &mut positions {

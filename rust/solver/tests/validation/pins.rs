@@ -3,7 +3,7 @@
 use boucle_geometry::Vector;
 use boucle_solver::{Cloth, IntegratorKind, Limiter, Mass, Settings, SpringMaterial};
 
-use crate::sheets::{farthest, material, network, run, sheet, simulation};
+use crate::sheets::{classic, farthest, material, network, run, sheet, simulation};
 
 fn curtain(limiter: Limiter) -> Cloth {
     let material =
@@ -12,7 +12,7 @@ fn curtain(limiter: Limiter) -> Cloth {
 }
 
 fn settings(integrator: IntegratorKind) -> Settings {
-    Settings { integrator, threads: 1, ..Settings::default() }
+    Settings { integrator, threads: 1, ..classic() }
 }
 
 #[test]

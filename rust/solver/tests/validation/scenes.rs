@@ -7,7 +7,7 @@ use boucle_solver::{
 };
 
 use crate::plain::Plain;
-use crate::sheets::{farthest, in_wind, material, run, sheet, simulation};
+use crate::sheets::{classic, farthest, in_wind, material, run, sheet, simulation};
 
 /// The numpy demonstration: 14 x 14 particles, one spring constant, a wind on the lower corner far from x = 0.
 fn demonstration() -> Plain {
@@ -42,7 +42,7 @@ fn demonstration_in_the_solver(plain: &Plain) -> Simulation {
         integrator: IntegratorKind::SymplecticEuler,
         step_size: StepSize::Seconds(0.01),
         threads: 1,
-        ..Settings::default()
+        ..classic()
     };
     in_wind(cloth, vec![wind], settings)
 }
@@ -118,7 +118,7 @@ fn hung(ks: f64, pins: &[u32], limiter: Limiter, seconds: usize) -> Simulation {
         integrator: IntegratorKind::Verlet,
         step_size: StepSize::Seconds(1.0 / 2700.0),
         threads: 1,
-        ..Settings::default()
+        ..classic()
     };
     let mut simulation = simulation(course_cloth(ks, pins, limiter), settings);
     run(&mut simulation, 30 * seconds);

@@ -77,6 +77,11 @@ pub(crate) fn mass_on_spring(stiffness: f64, damping: f64, material: &SpringMate
     network(vec![Vector::zeros(), Vector::x()], vec![spring], vec![1.0; 2], &[0], material)
 }
 
+/// The paper's integrator, with everything else as by default.
+pub(crate) fn classic() -> Settings {
+    Settings { integrator: IntegratorKind::SymplecticEuler, ..Settings::default() }
+}
+
 /// Frames of one step of h seconds each, taken whether stable or not, without gravity, on one thread.
 pub(crate) fn steps_of(h: f64, integrator: IntegratorKind) -> Settings {
     Settings {
@@ -86,7 +91,7 @@ pub(crate) fn steps_of(h: f64, integrator: IntegratorKind) -> Settings {
         step_size: StepSize::Substeps(1),
         allow_unstable: true,
         threads: 1,
-        ..Settings::default()
+        ..classic()
     }
 }
 

@@ -3,7 +3,7 @@
 use boucle_geometry::Vector;
 use boucle_solver::{Cloth, IntegratorKind, Mass, Settings, Simulation, SpringMaterial, StepSize};
 
-use crate::sheets::{G, assert_close, material, network, run, sheet, simulation, spring};
+use crate::sheets::{G, assert_close, classic, material, network, run, sheet, simulation, spring};
 
 /// Spring stiffness (N/m) and particle mass (kg) of the chains: each mass draws its spring out by a millimetre.
 const STIFFNESS: f64 = 98.1;
@@ -29,7 +29,7 @@ fn settled(cloth: Cloth, seconds: usize) -> Simulation {
         integrator: IntegratorKind::SymplecticEuler,
         step_size: StepSize::Auto,
         threads: 1,
-        ..Settings::default()
+        ..classic()
     };
     let mut simulation = simulation(cloth, settings);
     run(&mut simulation, seconds);

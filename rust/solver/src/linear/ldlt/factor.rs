@@ -160,7 +160,11 @@ fn eliminate_own(square: &mut Square, own: usize) {
             let column = &mut column[..size];
             for i in 0..j {
                 let factor = before[i * size + first + j];
-                subtract(&mut column[first + j..], &before[i * size + first + j..(i + 1) * size], factor);
+                subtract(
+                    &mut column[first + j..],
+                    &before[i * size + first + j..(i + 1) * size],
+                    factor,
+                );
             }
             let pivot = column[first + j].sqrt();
             column[first + j] = pivot;

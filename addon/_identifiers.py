@@ -26,6 +26,7 @@ class Panels:
     SHAPE = "BOUCLE_PT_shape"
     FORCES = "BOUCLE_PT_forces"
     SOLVER = "BOUCLE_PT_solver"
+    SOLVER_ADVANCED = "BOUCLE_PT_solver_advanced"
     CACHE = "BOUCLE_PT_cache"
 
 
@@ -37,6 +38,9 @@ TARGET_ATTRIBUTE = "boucle_target"
 """Point attribute: where the modifiers above the slot put each vertex (m, object space)."""
 REST_ATTRIBUTE = "boucle_rest"
 """Point attribute: the rest shape (m, object space), there only while `position` shows a frame."""
+
+STRAIN_ATTRIBUTE = "boucle_strain"
+"""Point attribute: the largest strain of the edges at each vertex in the frame that is shown."""
 
 REST_COUNT = "boucle_rest_count"
 """Custom property of a mesh beside that attribute: how many vertices it had when the rest shape was kept."""

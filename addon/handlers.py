@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from .bridge import live, registry, runtime, safe_step, saving
+from .bridge import certificate, live, registry, runtime, safe_step, saving
 
 
 @persistent
@@ -52,6 +52,7 @@ def load_pre(*_: Any) -> None:
     """Forget everything about the file that is about to go."""
     live.forget_all()
     safe_step.forget()
+    certificate.forget()
     runtime.rendering.clear()
 
 

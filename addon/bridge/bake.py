@@ -131,6 +131,7 @@ class Bake:
             end=self.end,
             vertex_count=record["vertices"],
             digest=drift.whole_digest({**record, "end": None}),
+            keeps_strain=obj.boucle.use_strain,
         )
         mesh = obj.data
         cloth = {
@@ -197,6 +198,12 @@ class Bake:
             if bpy.data.scenes.get(self._scene_name) is not None:
                 self._scene().frame_set(frame, subframe=subframe)
             runtime.busy.discard("bake")
+            self._show_strain()
+
+    def _show_strain(self) -> None:
+        obj, scene = registry.by_uid(self.uid), bpy.data.scenes.get(self._scene_name)
+        if registry.is_cloth(obj) and scene is not None:
+            live.show_strain(obj, scene)
 
     def _restore(self, shown: dict[str, bool]) -> None:
         obj = registry.by_uid(self.uid)

@@ -58,13 +58,13 @@ class Direct:
             if runtime.rendering:
                 return
             rest.keep(obj.data)
-        mesh_arrays.write_positions(obj.data, frames.nearest(frame))
+        mesh_arrays.write_positions(obj.data, frames.nearest(frame).positions)
         self._frame = frame
 
     def is_shown(self, obj: bpy.types.Object, frames: LiveFrames) -> bool:
         """Whether nobody else has moved the vertices since."""
         present = memoryview(mesh_arrays.read_positions(obj.data)).cast("B")
-        return present == memoryview(frames.nearest(self._frame)).cast("B")
+        return present == memoryview(frames.nearest(self._frame).positions).cast("B")
 
     def hide(self, obj: bpy.types.Object) -> None:
         """Put the rest shape back."""
@@ -108,10 +108,9 @@ class TemporaryFile:
         return True
 
     def _append(self, obj: bpy.types.Object, frames: LiveFrames) -> bool:
-        kept = frames.all()
         if self._writer is None:
             self._writer = pc2.Writer.create(self._path, len(obj.data.vertices), frames.first)
-        missing = kept[self._writer.sample_count :]
+        missing = frames.positions_from(self._writer.sample_count)
         for positions in missing:
             self._writer.append(positions)
         return bool(missing)

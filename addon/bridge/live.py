@@ -19,11 +19,11 @@ import bpy
 
 from .. import native
 from ..core import drift, points
-from ..core.live_frames import Action, LiveFrames
+from ..core.live_frames import Action, Frame, LiveFrames
 from ..core.points import Points
 from ..core.progress import size
 from ..core.refusal import Refusal, sentence_of
-from . import cache, display, registry, rest, runtime, sampling, settings, simulation
+from . import cache, display, registry, rest, runtime, sampling, settings, simulation, strain
 from . import slot as slots
 
 EDITING_MODES = frozenset({"EDIT", "SCULPT", "WEIGHT_PAINT"})
@@ -70,6 +70,20 @@ def on_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     for obj in registry.cloths_of(scene):
         if _is_live(obj):
             _come_to_frame(obj, scene, depsgraph)
+        show_strain(obj, scene)
+
+
+def show_strain(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
+    """Let the mesh's attribute tell the strain of the frame that is shown, if the user wants it."""
+    values = None
+    session = session_of(obj)
+    if not obj.boucle.use_strain or obj.mode in EDITING_MODES:
+        pass
+    elif cache.is_baked(obj):
+        values = strain.of_bake(obj, scene.frame_current)
+    elif session is not None and _is_live(obj):
+        values = session.frames.nearest(scene.frame_current).strain
+    strain.show(obj, values)
 
 
 def _is_live(obj: bpy.types.Object) -> bool:
@@ -124,11 +138,12 @@ def _build(
     sampling.inverse(obj, matrix)
     solver = simulation.maker(obj, description, points.transform(local, matrix, "d"))()
     limit = memory_limit()
+    first = Frame(local, solver.certificate(), _read_strain(solver, obj))
     shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
     return Session(
         uid=obj.session_uid,
         solver=solver,
-        frames=LiveFrames(obj.boucle.frame_start, local, limit),
+        frames=LiveFrames(obj.boucle.frame_start, first, limit),
         is_pinned=simulation.is_pinned(description),
         display=shown,
         basis=_basis(obj, scene),
@@ -186,8 +201,9 @@ def _step(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgrap
     try:
         if pose.targets is not None:
             session.solver.set_pin_targets(0, pose.targets)
-        session.solver.advance()
-        session.frames.add(_read(session, pose.to_object, len(obj.data.vertices)))
+        certificate = session.solver.advance()
+        positions = _read(session, pose.to_object, len(obj.data.vertices))
+        session.frames.add(Frame(positions, certificate, _read_strain(session.solver, obj)))
     except native.FAILURES as error:
         session.solver = None
         _say(obj, f"{sentence_of(error)}; frames up to {session.frames.last} are kept")
@@ -201,6 +217,14 @@ def _read(session: Session, to_object: points.Affine, vertex_count: int) -> Poin
     world = points.empty("d", 3 * vertex_count)
     session.solver.read_positions(0, world)
     return points.transform(world, to_object, "f")
+
+
+def _read_strain(solver: Any, obj: bpy.types.Object) -> Points | None:
+    if not obj.boucle.use_strain:
+        return None
+    out = points.empty("f", len(obj.data.vertices))
+    solver.read_strain(0, out)
+    return out
 
 
 def _explain(session: Session, action: Action) -> str:
@@ -231,8 +255,10 @@ def drop(obj: bpy.types.Object) -> None:
         return
     if session is not None:
         session.display.end(obj)
-    if rest.is_displaced(obj.data) and not runtime.rendering:
-        rest.put_back(obj.data)
+    if not runtime.rendering:
+        strain.hide(obj.data)
+        if rest.is_displaced(obj.data):
+            rest.put_back(obj.data)
 
 
 def drop_all() -> None:
@@ -262,6 +288,7 @@ def revalidate(scene: bpy.types.Scene) -> None:
         session = _valid_session(obj, scene)
         if session is not None and _is_live(obj):
             session.display.show(obj, session.frames, scene.frame_current)
+        show_strain(obj, scene)
 
 
 def follow_edits(depsgraph: bpy.types.Depsgraph) -> None:
@@ -301,6 +328,7 @@ def hide_all() -> None:
             session.display.hide(obj)
         if obj.type == "MESH" and obj.mode not in EDITING_MODES:
             rest.put_back(obj.data)
+            strain.hide(obj.data)
 
 
 def show_all(scene: bpy.types.Scene) -> None:
@@ -309,6 +337,7 @@ def show_all(scene: bpy.types.Scene) -> None:
         session = session_of(obj)
         if session is not None and _is_live(obj):
             session.display.show(obj, session.frames, scene.frame_current)
+        show_strain(obj, scene)
 
 
 def status(obj: bpy.types.Object) -> str:

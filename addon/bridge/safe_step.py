@@ -16,9 +16,11 @@ _known: dict[int, tuple[str, str]] = {}
 
 
 def describe(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
-    """The safe time step and what it means for a frame."""
+    """The safe time step of an explicit integrator and what it means for a frame; any step is safe for the others."""
     session = live.session_of(obj)
     fps = settings.world(scene).fps
+    if settings.is_implicit(obj.boucle.integrator):
+        return "Any time step is stable with this integrator"
     if session is not None and session.solver is not None:
         return _words(session.solver, fps)
     try:

@@ -10,7 +10,7 @@ import bpy
 from ..core import cache_paths
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, cannot_write
-from . import cache, live, registry, rest, runtime, slot
+from . import cache, live, registry, rest, runtime, slot, strain
 
 
 def before_save(path: str) -> None:
@@ -39,6 +39,7 @@ def after_load() -> None:
     registry.forget()
     for obj in registry.local_cloths():
         rest.put_back(obj.data)
+        strain.hide(obj.data)
         found = slot.find(obj)
         if found is None:
             continue
@@ -46,6 +47,8 @@ def after_load() -> None:
         if not path or cache_paths.is_live(path):
             slot.silence(found.cache)
     cache.ensure_identity()
+    for obj in registry.cloths_of(bpy.context.scene):
+        live.show_strain(obj, bpy.context.scene)
 
 
 def adopt(obj: bpy.types.Object) -> None:
@@ -139,8 +142,11 @@ def _copy(source: CacheFiles, target: CacheFiles) -> None:
 def _each(source: CacheFiles, target: CacheFiles, act: object) -> None:
     try:
         os.makedirs(os.path.dirname(target.pc2), exist_ok=True)
+        replaces = os.path.isfile(source.pc2)
         for here, there in zip(source, target, strict=True):
             if os.path.isfile(here):
                 act(here, there)
+            elif replaces and os.path.isfile(there):  # it belongs to the bake that was here
+                os.remove(there)
     except OSError as error:
         raise cannot_write(target.pc2, error) from error

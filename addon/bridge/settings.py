@@ -27,6 +27,11 @@ def values(obj: bpy.types.Object) -> dict[str, Any]:
     return out
 
 
+def is_implicit(integrator: str) -> bool:
+    """Whether an integrator is stable at any step."""
+    return integrator in scene_json.IMPLICIT
+
+
 def world(scene: bpy.types.Scene) -> World:
     """Gravity (m/s²) and frames a second of a scene."""
     gravity = tuple(scene.gravity) if scene.use_gravity else (0.0, 0.0, 0.0)

@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple, Protocol
 
-from . import checkpoint_file, points, report
+from . import checkpoint_file, points, report, strain_file
 from .cache_paths import CacheFiles
 from .pc2 import Writer
 from .points import Affine, Points
@@ -34,6 +34,7 @@ class Simulation(Protocol):
     def advance(self) -> dict[str, Any]: ...
     def certificate(self) -> dict[str, Any]: ...
     def read_positions(self, cloth: int, out: Points) -> None: ...
+    def read_strain(self, cloth: int, out: Points) -> None: ...
     def checkpoint(self) -> bytes: ...
     def restore(self, checkpoint: bytes) -> None: ...
 
@@ -53,6 +54,7 @@ class Plan(NamedTuple):
     end: int
     vertex_count: int
     digest: str
+    keeps_strain: bool = False
 
 
 class Step:
@@ -101,6 +103,7 @@ class Store:
         self.plan = plan
         self.rows = rows
         self._writer: Writer | None = None
+        self._strain: strain_file.Writer | None = None
         self._saved_at = time.monotonic()
         self.last_frame: int | None = None
 
@@ -120,6 +123,8 @@ class Store:
         except OSError as error:
             raise cannot_write(self.files.pc2, error) from error
         self._writer = Writer.create(self.files.pc2, self.plan.vertex_count, self.plan.first)
+        if self.plan.keeps_strain:
+            self._strain = strain_file.Writer.create(self.files.strain, self.plan.vertex_count)
 
     def resume(self, simulation: Simulation) -> bool:
         """Take up the checkpoint; False if there is none.
@@ -139,13 +144,26 @@ class Store:
         self._writer = Writer.reopen(
             self.files.pc2, self.plan.vertex_count, checkpoint.sample_count
         )
+        self._resume_strain(checkpoint.sample_count)
         self.rows.keep_first(checkpoint.sample_count, report.read(self.files.report))
         self.last_frame = checkpoint.frame
         return True
 
-    def write(self, frame: int, positions: Points, row: dict[str, Any], step: Step) -> None:
-        """Add a frame: positions (m), object space, float32, and its certificate."""
+    def _resume_strain(self, sample_count: int) -> None:
+        """Strain that was not kept from the start cannot be made up for: what is there goes."""
+        if self.plan.keeps_strain:
+            path, count = self.files.strain, self.plan.vertex_count
+            self._strain = strain_file.Writer.reopen(path, count, sample_count)
+        if self._strain is None and os.path.isfile(self.files.strain):
+            os.remove(self.files.strain)
+
+    def write(
+        self, frame: int, positions: Points, strain: Points, row: dict[str, Any], step: Step
+    ) -> None:
+        """Add a frame: positions (m), object space, float32, its strain and its certificate."""
         if frame >= self.plan.first:
+            if self._strain:
+                self._strain.append(strain)
             self._writer.append(positions)
             self.rows.add(row, step.seconds)
         self.last_frame = frame
@@ -173,9 +191,10 @@ class Store:
         self._saved_at = time.monotonic()
 
     def close(self) -> None:
-        """Close the PC2 file."""
-        if self._writer:
-            self._writer.close()
+        """Close the files."""
+        for writer in (self._writer, self._strain):
+            if writer:
+                writer.close()
 
 
 def set_aside(files: CacheFiles) -> None:
@@ -212,22 +231,24 @@ def bake(
     """
     plan = store.plan
     world = points.empty("d", 3 * plan.vertex_count)
+    strain = points.empty("f", plan.vertex_count if plan.keeps_strain else 0)
     pending: tuple[Step, Pose] | None = None
     usable = True
 
     def commit(step: Step, pose: Pose) -> None:
         certificate = step.result()
-        store.write(step.frame, points.transform(world, pose.to_object, "f"), certificate, step)
+        positions = points.transform(world, pose.to_object, "f")
+        store.write(step.frame, positions, strain, certificate, step)
 
     try:
         if not (resume and store.resume(simulation)):
             store.begin()
-            begin = Step(plan.start, lambda: _read(simulation, world))
+            begin = Step(plan.start, lambda: _rest(simulation, world, strain))
             begin.run()
             commit(begin, pose_at(plan.start))
         for frame in range(simulation.frame + 1, plan.end + 1):
             pose = pose_at(frame)
-            step = Step(frame, lambda pose=pose: _advance(simulation, pose, world))
+            step = Step(frame, lambda pose=pose: _advance(simulation, pose, world, strain))
             pending = (step, pose)
             yield step
             pending = None
@@ -245,14 +266,20 @@ def bake(
             store.close()
 
 
-def _read(simulation: Simulation, world: Points) -> dict[str, Any]:
-    simulation.read_positions(0, world)
+def _rest(simulation: Simulation, world: Points, strain: Points) -> dict[str, Any]:
+    _read(simulation, world, strain)
     return simulation.certificate()
 
 
-def _advance(simulation: Simulation, pose: Pose, world: Points) -> dict[str, Any]:
+def _advance(simulation: Simulation, pose: Pose, world: Points, strain: Points) -> dict[str, Any]:
     if pose.targets is not None:
         simulation.set_pin_targets(0, pose.targets)
     certificate = simulation.advance()
-    simulation.read_positions(0, world)
+    _read(simulation, world, strain)
     return certificate
+
+
+def _read(simulation: Simulation, world: Points, strain: Points) -> None:
+    simulation.read_positions(0, world)
+    if len(strain):
+        simulation.read_strain(0, strain)

@@ -15,6 +15,8 @@ class CacheFiles(NamedTuple):
     pc2: str
     report: str
     checkpoint: str
+    strain: str
+    """There only if the bake keeps the strain."""
 
     @property
     def previous(self) -> CacheFiles:
@@ -34,7 +36,7 @@ def _with_middle(path: str, word: str) -> str:
 def files_of(pc2: str) -> CacheFiles:
     """The files that belong to a PC2 file."""
     stem = os.path.splitext(pc2)[0]
-    return CacheFiles(pc2, f"{stem}.json", f"{stem}.checkpoint")
+    return CacheFiles(pc2, f"{stem}.json", f"{stem}.checkpoint", f"{stem}.strain")
 
 
 def blend_stem(blend_path: str) -> str:

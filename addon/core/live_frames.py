@@ -6,7 +6,9 @@ never over a gap. Everything else shows what is kept.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from enum import Enum
+from typing import Any, NamedTuple
 
 from .points import Points
 
@@ -21,25 +23,37 @@ class Action(Enum):
     IGNORE = "a sub-frame: leave everything as it is"
 
 
-class LiveFrames:
-    """Simulated frames from first on, without a gap, in object space (m), float32, flat."""
+class Frame(NamedTuple):
+    """What is kept of a frame."""
 
-    def __init__(self, first: int, rest: Points, limit_bytes: int) -> None:
+    positions: Points
+    """(m), object space, float32, flat."""
+    certificate: Mapping[str, Any]
+    strain: Points | None = None
+    """Largest strain of the edges at each vertex, float32; None where it was not asked for."""
+
+    @property
+    def size_bytes(self) -> int:
+        """Memory of its arrays."""
+        strain_bytes = 0 if self.strain is None else memoryview(self.strain).nbytes
+        return memoryview(self.positions).nbytes + strain_bytes
+
+
+class LiveFrames:
+    """Simulated frames from first on, without a gap."""
+
+    def __init__(self, first: int, rest: Frame, limit_bytes: int) -> None:
         """Begin with the rest pose at frame first; beyond limit_bytes no frame is added."""
         self.first = first
-        self._frames: list[Points] = [rest]
-        self._frame_bytes = memoryview(rest).nbytes
+        self._frames: list[Frame] = [rest]
         self._limit_bytes = limit_bytes
+        self.size_bytes = rest.size_bytes
+        """Memory that the frames take."""
 
     @property
     def last(self) -> int:
         """The last simulated frame."""
         return self.first + len(self._frames) - 1
-
-    @property
-    def size_bytes(self) -> int:
-        """Memory that the frames take."""
-        return self._frame_bytes * len(self._frames)
 
     def action(self, frame: int, subframe: float, end: int) -> Action:
         """What to do when the scene comes to a frame; end is the last frame to simulate."""
@@ -47,18 +61,23 @@ class LiveFrames:
             return Action.IGNORE
         if frame <= self.last or frame > end:
             return Action.SHOW
-        if self.size_bytes + self._frame_bytes > self._limit_bytes:
+        if self.size_bytes + self._frames[-1].size_bytes > self._limit_bytes:
             return Action.FULL
         return Action.STEP if frame == self.last + 1 else Action.WAIT
 
-    def add(self, positions: Points) -> None:
+    def add(self, frame: Frame) -> None:
         """Keep the frame after the last."""
-        self._frames.append(positions)
+        self._frames.append(frame)
+        self.size_bytes += frame.size_bytes
 
-    def nearest(self, frame: int) -> Points:
+    def nearest(self, frame: int) -> Frame:
         """The kept frame, or the first or last one beyond the ends."""
         return self._frames[min(max(frame, self.first), self.last) - self.first]
 
-    def all(self) -> list[Points]:
-        """Every kept frame, in order."""
-        return self._frames
+    def certificate(self, frame: int) -> Mapping[str, Any]:
+        """The certificate of a kept frame; empty beyond the ends."""
+        return self.nearest(frame).certificate if self.first <= frame <= self.last else {}
+
+    def positions_from(self, index: int) -> list[Points]:
+        """Positions of the kept frames from a number on, in order; the first frame is number 0."""
+        return [frame.positions for frame in self._frames[index:]]

@@ -15,6 +15,10 @@ _LARGEST = frozenset({"frame", "substeps", "max_strain", "p99_strain", "max_shea
 """Parts of a certificate of which several cloths have the largest, not the sum."""
 
 
+_MOST_NAMED = 8
+"""How many overstretched edges a row names."""
+
+
 class Report:
     """The content of report.json, as the scene contract names it; `record` is the add-on's own part."""
 
@@ -46,8 +50,8 @@ class Report:
 def joined(reports: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """One report of several cloths, each simulated by itself.
 
-    A frame's row holds the largest strain, substeps of the cloth that took most, and sums of everything else; its hash is a
-    64-bit BLAKE2b digest of the cloths' hashes, in order. The report of a single cloth is left as it is.
+    A frame's row holds the largest strain, the worst edges, substeps of the cloth that took most, and sums of everything else;
+    its hash is a 64-bit BLAKE2b digest of the cloths' hashes, in order. The report of a single cloth is left as it is.
     """
     if len(reports) == 1:
         return dict(reports[0])
@@ -74,9 +78,13 @@ def _whole(
 
 def _joined_row(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     out: dict[str, Any] = {}
-    for key in rows[0]:
+    for key in dict.fromkeys(key for row in rows for key in row):
         values = [row.get(key) for row in rows]
-        if key == "hash":
+        if key == "overstretched":
+            out[key] = _worst([edge for edges in values for edge in edges or ()])
+        elif key == "overstretched_count":
+            out[key] = sum(count or 0 for count in values)
+        elif key == "hash":
             digest = hashlib.blake2b("".join(map(str, values)).encode(), digest_size=8)
             out[key] = values[0] if len(values) == 1 else f"blake2b-64:{digest.hexdigest()}"
         elif None in values:
@@ -84,6 +92,11 @@ def _joined_row(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         else:
             out[key] = max(values) if key in _LARGEST else sum(values)
     return out
+
+
+def _worst(edges: list[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+    """The longest edges of several cloths, as many as a row names."""
+    return sorted(edges, key=lambda edge: -(edge["strain"] or 0.0))[:_MOST_NAMED]
 
 
 def encode(report: Mapping[str, Any]) -> bytes:

@@ -22,6 +22,7 @@ class BOUCLE_PT_cache(PhysicsPanel, Panel):
         column.prop(settings, "frame_start")
         column.prop(settings, "frame_end")
         column.prop(settings, "use_live")
+        column.prop(settings, "use_strain")
         layout = self.layout
         layout.operator(Operators.BAKE).resume = False
         row = layout.row(align=True)
@@ -38,6 +39,10 @@ class BOUCLE_PT_cache(PhysicsPanel, Panel):
             layout.operator(Operators.ADOPT_BAKE)
         for line in settings.status.split("; "):
             draw_text(layout, line, context)
+        if settings.certificate:
+            draw_text(layout, settings.certificate, context, icon="INFO")
+        if settings.warning:
+            draw_text(layout, settings.warning, context, icon="ERROR")
 
 
 CLASSES = (BOUCLE_PT_cache,)

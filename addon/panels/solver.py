@@ -19,9 +19,34 @@ class BOUCLE_PT_solver(PhysicsPanel, Panel):
         """Lay out."""
         settings = context.object.boucle
         column = self.column()
-        for name in ("integrator", "substeps", "time_step", "allow_unstable"):
-            column.prop(settings, name)
+        column.prop(settings, "integrator")
+        if settings.is_implicit:
+            quality = column.column()
+            quality.active = settings.substeps == 0 and settings.time_step == 0.0
+            quality.prop(settings, "quality")
+            if settings.quality == "custom":
+                quality.prop(settings, "tolerance")
+        column.prop(settings, "substeps")
+        column.prop(settings, "time_step")
+        if not settings.is_implicit:
+            column.prop(settings, "allow_unstable")
         draw_text(self.layout, settings.safe_step, context, icon="TIME")
 
 
-CLASSES = (BOUCLE_PT_solver,)
+class BOUCLE_PT_solver_advanced(PhysicsPanel, Panel):
+    """What seldom needs a change"""
+
+    bl_idname = Panels.SOLVER_ADVANCED
+    bl_parent_id = Panels.SOLVER
+    bl_label = "Advanced"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: Context) -> None:
+        """Lay out."""
+        settings = context.object.boucle
+        column = self.column()
+        column.active = settings.is_implicit
+        column.prop(settings, "linear_solver")
+
+
+CLASSES = (BOUCLE_PT_solver, BOUCLE_PT_solver_advanced)

@@ -18,7 +18,7 @@ class BOUCLE_PT_springs(PhysicsPanel, Panel):
     def draw(self, context: Context) -> None:
         """Lay out."""
         column = self.column()
-        for name in ("stretch", "shear", "bend"):
+        for name in ("stretch", "shear", "bend", "stiffness_from"):
             column.prop(context.object.boucle, name)
 
 

@@ -2,7 +2,7 @@
 
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
-from .changes import FIXED, OVERRIDABLE, changed
+from .changes import FIXED, OVERRIDABLE, changed, strain_switched
 
 _HIDDEN = {"HIDDEN"}
 
@@ -14,6 +14,22 @@ def _read_status(settings: object) -> str:
 
     obj = settings.id_data
     return cache.status(obj, bpy.context.scene) or live.status(obj)
+
+
+def _read_certificate(settings: object) -> str:
+    import bpy
+
+    from ..bridge import certificate
+
+    return certificate.line(settings.id_data, bpy.context.scene)
+
+
+def _read_warning(settings: object) -> str:
+    import bpy
+
+    from ..bridge import certificate
+
+    return certificate.warning(settings.id_data, bpy.context.scene)
 
 
 def _read_is_baked(settings: object) -> bool:
@@ -53,6 +69,22 @@ class CacheProperties:
         name="Live",
         description="Simulate while the animation plays, as long as the cloth is not baked",
         default=True, options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    use_strain: BoolProperty(
+        name="Strain Attribute",
+        description="Tell the largest strain of the edges at each vertex in the attribute boucle_strain (L/L0 - 1); "
+        "bakes keep it beside the cache",
+        default=False, options=FIXED, override=OVERRIDABLE, update=strain_switched,
+    )  # fmt: skip
+    certificate: StringProperty(
+        name="Certificate",
+        description="Stretch, work, energy and hash of the present frame, live or baked",
+        get=_read_certificate, options=FIXED, override=OVERRIDABLE,
+    )  # fmt: skip
+    warning: StringProperty(
+        name="Warning",
+        description="Edges that are longer in the present frame than the deformation rate allows",
+        get=_read_warning, options=FIXED, override=OVERRIDABLE,
     )  # fmt: skip
     status: StringProperty(
         name="Status",

@@ -16,6 +16,14 @@ def changed(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> N
     live.drop(settings.id_data)
 
 
+def strain_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Show the strain that is known of the present frame, or no longer."""
+    from ..bridge import live, registry
+
+    if registry.is_cloth(settings.id_data) and settings.id_data.library is None:
+        live.show_strain(settings.id_data, context.scene)
+
+
 def switched(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
     """Make the object a cloth, or no longer one."""
     from ..bridge import cloth

@@ -13,6 +13,12 @@ def _read_safe_step(settings: object) -> str:
     return safe_step.describe(settings.id_data, bpy.context.scene)
 
 
+def _read_is_implicit(settings: object) -> bool:
+    from ..bridge import settings as bridge_settings
+
+    return bridge_settings.is_implicit(settings.integrator)
+
+
 class SolverProperties:
     """Settings of the solver."""
 
@@ -20,18 +26,52 @@ class SolverProperties:
         name="Integrator",
         description="The rule that moves the vertices",
         items=(
-            ("forward_euler", "Forward Euler", "The textbook's first: needs much damping"),
-            ("symplectic_euler", "Symplectic Euler", "Velocity first, then position"),
-            ("verlet", "Verlet", "Velocity Verlet, second order"),
-            ("leapfrog", "Leapfrog", "Half a drift, a kick, half a drift"),
-            ("midpoint", "Midpoint", "Runge-Kutta, second order"),
-            ("rk4", "Runge-Kutta 4", "The classic fourth order"),
+            ("bdf2", "BDF2", "Implicit, second order: stable at any step, with little damping"),
+            ("implicit_euler", "Implicit Euler", "Stable at any step; damps the motion"),
+            ("forward_euler", "Forward Euler", "Explicit, the textbook's first: needs much damping"),
+            ("symplectic_euler", "Symplectic Euler", "Explicit: velocity first, then position"),
+            ("verlet", "Verlet", "Explicit: velocity Verlet, second order"),
+            ("leapfrog", "Leapfrog", "Explicit: half a drift, a kick, half a drift"),
+            ("midpoint", "Midpoint", "Explicit: Runge-Kutta, second order"),
+            ("rk4", "Runge-Kutta 4", "Explicit: the classic fourth order"),
         ),
-        default="symplectic_euler", options=FIXED, override=OVERRIDABLE, update=changed,
+        default="bdf2", options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    is_implicit: BoolProperty(
+        name="Is Implicit",
+        description="Whether the integrator is stable at any step",
+        get=_read_is_implicit, options=FIXED, override=OVERRIDABLE,
+    )  # fmt: skip
+    quality: EnumProperty(
+        name="Quality",
+        description="How exact the automatic steps of an implicit integrator are",
+        items=(
+            ("draft", "Draft", "Few steps: error tolerance 0.02"),
+            ("normal", "Normal", "Error tolerance 0.005"),
+            ("final", "Final", "Many steps: error tolerance 0.001"),
+            ("custom", "Custom", "An error tolerance of one's own"),
+        ),
+        default="normal", options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    tolerance: FloatProperty(
+        name="Tolerance",
+        description="What a step may be off, as a fraction of the cloth's size; smaller takes more steps",
+        default=5e-3, min=1e-6, max=1.0, soft_min=1e-4, soft_max=0.1, precision=5, step=0.1,
+        options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    linear_solver: EnumProperty(
+        name="Linear Solver",
+        description="What inverts the constant part of an implicit step's equations",
+        items=(
+            ("auto", "Automatic", "By the number of vertices"),
+            ("ldlt", "LDLT", "Exactly, by elimination"),
+            ("multigrid", "Multigrid", "Nearly, over coarser and coarser equations"),
+        ),
+        default="auto", options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     substeps: IntProperty(
         name="Substeps",
-        description="Steps a frame; 0 takes as few as are stable",
+        description="Steps a frame; 0 takes as few as are stable and, if implicit, as exact as Quality asks",
         default=0, min=0, max=100_000, soft_max=500,
         options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip
@@ -43,11 +83,11 @@ class SolverProperties:
     )  # fmt: skip
     allow_unstable: BoolProperty(
         name="Allow Unstable",
-        description="Take steps beyond the safe one as asked, to see the cloth break down",
+        description="Take explicit steps beyond the safe one as asked, to see the cloth break down",
         default=False, options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     safe_step: StringProperty(
         name="Safe Time Step",
-        description="The largest time step that keeps these springs stable and that the limiter keeps up with",
+        description="The largest explicit time step that is stable and that the limiter keeps up with",
         get=_read_safe_step, options=FIXED, override=OVERRIDABLE,
     )  # fmt: skip

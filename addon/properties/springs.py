@@ -28,6 +28,23 @@ class SpringProperties:
         default=5.0, min=0.0, max=_LARGEST, soft_max=1000.0, precision=2,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
+    stiffness_from: EnumProperty(
+        name="Stiffness From",
+        description="What the three numbers are the stiffness of",
+        items=(
+            (
+                "springs",
+                "Springs",
+                "Of each spring, as in the papers: another mesh of the same cloth is softer or stiffer",
+            ),
+            (
+                "continuum",
+                "Membrane",
+                "Of the cloth: each spring gets its own from the mesh, so that a finer mesh moves alike",
+            ),
+        ),
+        default="springs", options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
     damping: FloatProperty(
         name="Damping",
         description="Damping of every spring (N·s/m)",

@@ -62,7 +62,10 @@ class Simulation:
     def cloth_names(self) -> list[str]: ...
     @property
     def safe_time_step(self) -> float:
-        """Largest step (s) that is stable with this integrator and that the limiter keeps up with; 0 if there is none."""
+        """Largest step (s) that is stable with this integrator and that the limiter keeps up with; 0 if there is none.
+
+        A whole frame for implicit integrators, with which any step is stable.
+        """
 
     @property
     def substeps(self) -> int:
@@ -85,14 +88,17 @@ class Simulation:
     def release_pins(self, cloth: int, vertices: Sequence[int] | None = None) -> None:
         """Let pinned vertices (all if None) go, keeping their velocity."""
 
-    def advance(self) -> dict[str, float | int | str | None]:
+    def advance(self) -> dict[str, float | int | str | list[dict[str, object]] | None]:
         """Move on by one frame and return its certificate: a row of `frames` in report.json, without `seconds`.
+
+        Where edges are overstretched the row counts them (`overstretched_count`) and names the worst 8 (`overstretched`:
+        cloth, vertices, strain).
 
         Raises:
             DivergedError, UnstableError: The state is that of the last good frame.
         """
 
-    def certificate(self) -> dict[str, float | int | str | None]:
+    def certificate(self) -> dict[str, float | int | str | list[dict[str, object]] | None]:
         """The certificate of the present state."""
 
     def read_positions(self, cloth: int, out: Buffer) -> None:
@@ -103,6 +109,12 @@ class Simulation:
 
     def read_strain(self, cloth: int, out: Buffer) -> None:
         """Fill out, float32 (n,), with the largest strain of the edges at each vertex."""
+
+    def overstretched_edges(self, cloth: int) -> list[tuple[int, int, float]]:
+        """List the mesh edges that are longer than the deformation rate allows: both vertices and the strain, worst first.
+
+        An edge is listed from a tenth of a percent of its rest length on beyond the rate; with the limiter "none", none is.
+        """
 
     def read_springs(self, cloth: int) -> tuple[bytes, bytes, bytes, bytes, bytes]:
         """Return the springs as native-endian bytes, in this order.

@@ -10,6 +10,8 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+EXPLICIT = "Cloth.integrator='symplectic_euler'"
+"""For what only steps that are too long can do."""
 HEADER = struct.Struct("<12siiffi")
 
 
@@ -135,13 +137,13 @@ def test_the_files_settings_stay_its_own_and_it_is_saved_only_with_frames_to_pla
     untouched, own = path.read_bytes(), new_blender.run(settings_of, path=path)
     overrides = ["Cloth.shear=40", "Cloth.limiter='none'", "Cloth.wind_velocity=[1, 2, 3]"]
     bake(path, "--quiet", "--frames", "9:3", "--set", *overrides, check=2)
-    bake(path, "--quiet", "--set", *overrides, "Cloth.substeps=1", check=2)
+    bake(path, "--quiet", "--set", *overrides, EXPLICIT, "Cloth.substeps=1", check=2)
     assert path.read_bytes() == untouched
     bake(path, "--quiet", "--set", *overrides)
     after = new_blender.run(settings_of, path=path)
     assert after["played"] and "outdated, changed since" in after["status"]
     assert {**after, "played": "", "status": ""} == {**own, "status": ""}
-    wild = ["Cloth.stretch=1e6", "Cloth.substeps=1", "Cloth.allow_unstable=true"]
+    wild = [EXPLICIT, "Cloth.stretch=1e6", "Cloth.substeps=1", "Cloth.allow_unstable=true"]
     bake(path, "--quiet", "--set", *wild, "Cloth.frame_end=20", "Cloth.limiter='none'", check=3)
     after = new_blender.run(settings_of, path=path)
     assert {**after, "played": "", "status": ""} == {**own, "status": ""}
@@ -252,7 +254,7 @@ def test_divergence_is_exit_code_3_and_a_folder_that_cannot_be_is_4(new_blender)
     path = new_blender.folder / "shot.blend"
     new_blender.run(make_file, path=path, columns=8, end=20)
     out = new_blender.folder / "out"
-    wild = ["Cloth.stretch=1e6", "Cloth.substeps=1", "Cloth.allow_unstable=true"]
+    wild = [EXPLICIT, "Cloth.stretch=1e6", "Cloth.substeps=1", "Cloth.allow_unstable=true"]
     done = bake(path, "--out", out, "--set", *wild, "Cloth.limiter='none'", check=3)
     assert "diverged at frame" in done.stderr and "are kept" in done.stderr
     assert 2 <= samples(out / "Cloth.pc2")[-1] < 20
@@ -267,7 +269,7 @@ def test_a_step_that_becomes_unstable_is_exit_code_3_with_the_frames_before_it(n
     new_blender.run(make_file, path=path, columns=8, end=60)
     out = new_blender.folder / "out"
     soft = ["Cloth.stretch=20", "Cloth.shear=5", "Cloth.bend=0.5", "Cloth.limiter='stiffen'"]
-    words = [path, "--out", out, "--quiet", "--set", *soft]
+    words = [path, "--out", out, "--quiet", "--set", EXPLICIT, *soft]
     refused = bake(*words, "Cloth.substeps=1", check=2).stderr
     least = refused.partition("at least ")[2].partition(" ")[0]
     done = bake(*words, f"Cloth.substeps={least}", check=3)
@@ -304,10 +306,10 @@ def test_the_exit_code_of_two_cloths_is_that_of_the_first_failure(new_blender):
 
     def wild(name):
         values = ["stretch=1e6", "substeps=1", "allow_unstable=true", "limiter='none'"]
-        return [f"{name}.{value}" for value in values]
+        return [EXPLICIT.replace("Cloth", name), *(f"{name}.{value}" for value in values)]
 
     def refused(name):
-        return [f"{name}.substeps=1"]
+        return [EXPLICIT.replace("Cloth", name), f"{name}.substeps=1"]
 
     both = [*wild("Cloth"), *refused("Cloth.001")]
     done = bake(path, "--out", out, "--set", *both, check=3)

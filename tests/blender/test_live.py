@@ -261,7 +261,13 @@ def break_down():
     from cloths import add_cloth, mesh_positions, play
 
     obj = add_cloth(
-        stretch=1e6, shear=1e6, limiter="none", substeps=1, allow_unstable=True, damping=0.0
+        integrator="symplectic_euler",
+        stretch=1e6,
+        shear=1e6,
+        limiter="none",
+        substeps=1,
+        allow_unstable=True,
+        damping=0.0,
     )
     rest = mesh_positions(obj)
     play(1, 20)
@@ -321,7 +327,14 @@ def fill_the_memory():
 
     preferences = bpy.context.preferences.addons["bl_ext.user_default.boucle"].preferences
     preferences.live_memory = 10
-    obj = add_cloth(columns=300, rows=300, end=50, use_wind=False, substeps=1, allow_unstable=True)
+    obj = add_cloth(
+        columns=300,
+        rows=300,
+        end=50,
+        integrator="symplectic_euler",
+        substeps=1,
+        allow_unstable=True,
+    )
     obj.boucle.stretch = obj.boucle.shear = obj.boucle.bend = 0.0
     obj.boucle.damping = 0.0
     play(1, 14)

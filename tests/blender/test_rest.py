@@ -58,7 +58,7 @@ def undo_and_redo():
     undone = mesh_positions(obj)
     session = addon("bridge.live").session_of(obj)
     kept = session is not None and session.frames.last
-    shows = session is not None and undone == list(session.frames.nearest(frame))
+    shows = session is not None and undone == list(session.frames.nearest(frame).positions)
     bpy.ops.ed.redo()
     obj = bpy.data.objects[name]
     bpy.ops.boucle.reset()

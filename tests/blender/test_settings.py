@@ -5,7 +5,7 @@ import re
 DESIGN_NAMES = {
     "enabled", "stretch", "shear", "bend", "damping", "damping_law", "deformation_rate", "limiter",
     "density", "mass_per_vertex", "mass_mode", "pin_group", "integrator", "substeps", "frame_start",
-    "frame_end",
+    "frame_end", "quality", "tolerance", "linear_solver", "stiffness_from", "use_strain",
 }  # fmt: skip
 
 
@@ -108,14 +108,19 @@ def draw_everything():
             kind.draw(Panel(), bpy.context)
 
     draw_panels()
+    bpy.context.scene.frame_set(1)
+    bpy.context.scene.frame_set(2)
     for name, value in {
-        "damping_per_kind": True,
+        "quality": "custom",
         "mass_mode": "vertex",
         "use_wind": True,
         "wind_law": "face",
         "limiter": "none",
     }.items():
         setattr(obj.boucle, name, value)
+    draw_panels()
+    obj.boucle.integrator = "verlet"
+    obj.boucle.damping_per_kind = True
     bpy.ops.boucle.bake()
     draw_panels()
 
@@ -152,7 +157,9 @@ def test_every_setting_is_drawn_and_the_safe_time_step_is_shown(blender):
     }  # fmt: skip
     text = " ".join(drawn)
     assert re.search(r"Safe time step: [\d.]+ ms, \d+ substeps a frame at 24 fps", text)
+    assert "Any time step is stable with this integrator" in " ".join(drawn)
     assert "Baked: frames 1 to 20" in text
+    assert "Frame 2: stretch" in text and " hash " in text
     assert all(len(line) < 45 for line in drawn), "Blender would cut it"
     assert not any(result["polls"])
 

@@ -5,7 +5,7 @@ from array import array
 
 import boucle_core
 import pytest
-from boucle_addon.core import bake, pc2, points, report, scene_json
+from boucle_addon.core import bake, pc2, points, report, scene_json, strain_file
 from boucle_addon.core.bake import Plan, Pose, Store
 from boucle_addon.core.cache_paths import files_of
 from boucle_addon.core.refusal import CacheRefusal, Refusal
@@ -25,21 +25,21 @@ def grid():
     return positions, array("i", range(0, len(corners), 4)), corners
 
 
-def solver(**springs):
+def solver(integrator="symplectic_euler", **springs):
     scene = {
         "scene": {"frames": [1, END], "fps": 24.0, "gravity": [0.0, 0.0, -9.81]},
         "cloth": [{
             "name": "A", "density": 0.2, "pins": {"vertices": [20, 24]},
             "springs": {"stretch": 500.0, "damping": 0.01, **springs},
         }],
-        "solver": {"substeps": 400, "allow_unstable": True},
+        "solver": {"integrator": integrator, "substeps": 400, "allow_unstable": True},
     }  # fmt: skip
     return boucle_core.Simulation(scene_json.encode(scene), [grid()], 1)
 
 
-def store(folder, digest="d", first=1, keeps_previous=True):
+def store(folder, digest="d", first=1, keeps_previous=True, keeps_strain=False):
     rows = report.Report("0.1.0", "", 1, {"name": "A"})
-    plan = Plan(1, first, END, SIDE**2, digest)
+    plan = Plan(1, first, END, SIDE**2, digest, keeps_strain)
     return Store(files_of(str(folder / "a.pc2")), plan, rows, keeps_previous)
 
 
@@ -129,6 +129,44 @@ def test_another_cloths_checkpoint_is_refused_and_kept(whole):
     with pytest.raises(boucle_core.BoucleError):
         pull(solver(stretch=400.0), store(whole), resume=True)
     assert (whole / "a.pc2").read_bytes() == before
+
+
+def test_strain_is_kept_beside_the_cache_and_goes_on_with_it(tmp_path):
+    count = SIDE**2
+    whole, part = tmp_path / "whole", tmp_path / "part"
+    simulation, expected = solver(), array("f", bytes(4 * count))
+    pull(simulation, store(whole, keeps_strain=True))
+    simulation.read_strain(0, expected)
+    path = str(whole / "a.strain")
+    assert strain_file.row_count(path, count) == END
+    assert strain_file.read(path, END - 1, count) == expected
+    assert max(abs(value) for value in strain_file.read(path, 0, count)) < 1e-5
+    assert strain_file.read(path, END, count) is None
+    assert strain_file.read(path, 0, count + 1) is None
+    pull(solver(), store(part, keeps_strain=True), steps=4)
+    assert strain_file.row_count(str(part / "a.strain"), count) == 5
+    pull(solver(), store(part, keeps_strain=True), resume=True)
+    assert (part / "a.strain").read_bytes() == (whole / "a.strain").read_bytes()
+
+
+def test_a_resumed_bake_keeps_no_strain_that_it_did_not_have_from_the_start(tmp_path):
+    for before, after in ((True, False), (False, True)):
+        pull(solver(), store(tmp_path, keeps_strain=before), steps=4)
+        pull(solver(), store(tmp_path, keeps_strain=after), resume=True)
+        assert pc2.read_header(str(tmp_path / "a.pc2")).sample_count == END
+        assert not (tmp_path / "a.strain").exists()
+
+
+@pytest.mark.parametrize("integrator", ["bdf2", "implicit_euler"])
+def test_a_stopped_bake_of_an_implicit_integrator_goes_on_bit_equal(tmp_path, integrator):
+    whole, part = tmp_path / "whole", tmp_path / "part"
+    pull(solver(integrator), store(whole))
+    pull(solver(integrator), store(part), steps=5)
+    pull(solver(integrator), store(part), resume=True)
+    assert (part / "a.pc2").read_bytes() == (whole / "a.pc2").read_bytes()
+    rows = [json.loads((folder / "a.json").read_text())["frames"] for folder in (whole, part)]
+    assert rows[0][-1]["hash"] == rows[1][-1]["hash"]
+    assert rows[0][-1]["iterations"] == rows[1][-1]["iterations"] > 0
 
 
 def test_frames_before_the_first_kept_one_are_simulated_and_left_out(whole, tmp_path):

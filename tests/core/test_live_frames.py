@@ -1,13 +1,17 @@
 from array import array
 
-from boucle_addon.core.live_frames import Action, LiveFrames
+from boucle_addon.core.live_frames import Action, Frame, LiveFrames
 
 
 def frames(count, limit=10_000):
-    kept = LiveFrames(5, array("f", [0.0] * 3), limit)
+    kept = LiveFrames(5, frame(0), limit)
     for value in range(1, count):
-        kept.add(array("f", [float(value)] * 3))
+        kept.add(frame(value))
     return kept
+
+
+def frame(value, strain=None):
+    return Frame(array("f", [float(value)] * 3), {"frame": 5 + value}, strain)
 
 
 def test_only_the_frame_after_the_last_is_simulated():
@@ -36,6 +40,28 @@ def test_full_memory_stops_the_simulation():
     assert kept.action(7, 0.0, 20) is Action.SHOW
 
 
+def test_strain_counts_in_the_memory():
+    kept = frames(3, limit=44)
+    kept.add(frame(3, array("f", [0.5])))
+    assert kept.size_bytes == 52
+    assert kept.action(9, 0.0, 20) is Action.FULL
+    assert kept.nearest(8).strain[0] == 0.5 and kept.nearest(7).strain is None
+
+
+def test_a_certificate_is_told_only_of_frames_that_are_there():
+    kept = frames(3)
+    assert [kept.certificate(number) for number in (4, 5, 7, 8)] == [
+        {}, {"frame": 5}, {"frame": 7}, {},
+    ]  # fmt: skip
+    assert [len(kept.positions_from(index)) for index in (0, 2, 3)] == [3, 1, 0]
+
+
 def test_beyond_the_ends_the_nearest_frame_is_shown():
     kept = frames(3)
-    assert [kept.nearest(frame)[0] for frame in (-9, 5, 6, 7, 99)] == [0.0, 0.0, 1.0, 2.0, 2.0]
+    assert [kept.nearest(number).positions[0] for number in (-9, 5, 6, 7, 99)] == [
+        0.0,
+        0.0,
+        1.0,
+        2.0,
+        2.0,
+    ]

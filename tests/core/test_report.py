@@ -59,3 +59,17 @@ def test_reports_of_several_cloths_are_joined_frame_by_frame():
     assert middle["max_strain"] == 0.1 and middle["intersections"] is None
     assert middle["hash"].startswith("blake2b-64:") and both["frames"][0]["hash"] == "xxh3-64:0"
     assert both["total_seconds"] == 1.0
+
+
+def test_a_joined_report_names_the_worst_edges_of_all_cloths():
+    def edges(name, strains):
+        return [{"cloth": name, "vertices": [0, 1], "strain": strain} for strain in strains]
+
+    one = made("A", [row(1), row(2, overstretched_count=9, overstretched=edges("A", [0.8, 0.2]))])
+    two = made("B", [row(1), row(2, overstretched_count=7, overstretched=edges("B", [0.5] * 7))])
+    both = report.joined([made("C", [row(1), row(2)]).as_dict(), one.as_dict(), two.as_dict()])
+    first, second = both["frames"]
+    assert "overstretched" not in first and "overstretched_count" not in first
+    assert second["overstretched_count"] == 16
+    strains = [edge["strain"] for edge in second["overstretched"]]
+    assert strains == [0.8, *[0.5] * 7]

@@ -12,6 +12,7 @@ VALUES = {
     "stretch": 500.0, "shear": 100.0, "bend": 5.0, "damping": 0.01, "damping_per_kind": False,
     "damping_stretch": 0.1, "damping_shear": 0.2, "damping_bend": 0.3, "damping_law": "relative",
     "air_damping": 0.001, "deformation_rate": 0.10000000149011612, "limiter": "project",
+    "stiffness_from": "springs", "quality": "normal", "tolerance": 0.05, "linear_solver": "auto",
     "integrator": "symplectic_euler", "substeps": 0, "time_step": 0.0, "allow_unstable": False,
     "use_wind": False, "wind_velocity": (0.0, 3.0, 0.0), "wind_law": "vertex",
     "wind_coefficient": 0.02, "wind_air_density": 1.2,
@@ -50,6 +51,25 @@ def test_mass_damping_and_steps_are_given_one_way_each():
     assert "substeps" not in described(time_step=0.001)["solver"]
 
 
+def test_only_automatic_steps_of_implicit_integrators_have_a_tolerance():
+    for integrator in ("bdf2", "implicit_euler"):
+        solver = described(integrator=integrator)["solver"]
+        assert solver["tolerance"] == 5e-3 and solver["linear_solver"] == "auto"
+        assert described(integrator=integrator, quality="draft")["solver"]["tolerance"] == 2e-2
+        assert described(integrator=integrator, quality="final")["solver"]["tolerance"] == 1e-3
+        assert described(integrator=integrator, quality="custom")["solver"]["tolerance"] == 0.05
+        for step in ({"substeps": 4}, {"time_step": 0.01}):
+            assert "tolerance" not in described(integrator=integrator, **step)["solver"]
+    assert not {"tolerance", "linear_solver"} & set(described()["solver"])
+
+
+def test_the_module_agrees_on_which_integrators_are_implicit():
+    for name in ("bdf2", "implicit_euler", "symplectic_euler", "verlet", "midpoint", "rk4"):
+        solver = simulation(described(integrator=name))
+        is_implicit = solver.safe_time_step == pytest.approx(1.0 / WORLD.fps)
+        assert is_implicit == (name in scene_json.IMPLICIT), name
+
+
 def test_pins_and_wind_are_there_only_if_they_act():
     assert described()["cloth"][0]["pins"] == {"vertices": [2, 3]}
     assert "pins" not in described(groups=Groups([], None))["cloth"][0]
@@ -83,6 +103,19 @@ def test_contradictions_are_refused():
         *(
             {"integrator": name, "damping": 0.0 if name == "leapfrog" else 0.01}
             for name in ("symplectic_euler", "verlet", "leapfrog", "midpoint", "rk4")
+        ),
+        *(
+            {"integrator": name, **more}
+            for name in ("bdf2", "implicit_euler")
+            for more in (
+                {},
+                {"quality": "custom", "tolerance": 1e-6},
+                {"substeps": 3},
+                {"time_step": 0.01},
+                {"linear_solver": "ldlt"},
+                {"linear_solver": "multigrid"},
+                {"stiffness_from": "continuum"},
+            )
         ),
         {"integrator": "forward_euler", "air_damping": 0.5, "damping": 0.5},
     ],

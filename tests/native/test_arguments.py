@@ -171,7 +171,7 @@ def test_threads_out_of_range_are_refused(sheet):
 
 def test_a_step_beyond_the_bound_is_refused_with_what_would_hold(sheet):
     scene = json.loads(sheet.scene())
-    scene["solver"] = {"substeps": 1}
+    scene["solver"] = {"integrator": "symplectic_euler", "substeps": 1}
     with refused(r"stability bound .* at least \d+ substeps"):
         boucle_core.Simulation(json.dumps(scene), [sheet.mesh()])
 

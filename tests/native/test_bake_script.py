@@ -58,7 +58,7 @@ def test_a_bake_leaves_what_the_contract_says(run_bake, small_scene, tmp_path, r
     assert report["boucle"] == "0.1.0"
     assert report["scene"] == str(small_scene)
     assert report["threads"] == 2
-    assert report["integrator"] == "symplectic_euler"
+    assert report["integrator"] == "bdf2"
     assert report["hash_algorithm"] == "xxh3-64"
     springs = 2 * 12 * 11 + 2 * 11**2 + 2 * 12 * 10
     assert report["cloths"] == [
@@ -69,7 +69,8 @@ def test_a_bake_leaves_what_the_contract_says(run_bake, small_scene, tmp_path, r
     for frame, row in enumerate(report["frames"], start=1):
         assert row["frame"] == frame
         assert (row["substeps"] > 0) == (frame > 1)
-        assert row["iterations"] == row["clipped"] == 0
+        assert (row["iterations"] > 0) == (frame > 1)
+        assert row["clipped"] == 0
         assert row["intersections"] is None
         assert -1 < row["p99_strain"] <= row["max_strain"] <= 0.101
         assert isinstance(row["max_shear_strain"], float)
@@ -228,7 +229,17 @@ def test_a_step_that_becomes_unstable_ends_with_3_and_names_the_frame(
     run_bake, small_scene, tmp_path, read_report
 ):
     soft = "cloth.0.springs={ stretch = 20, shear = 5, bend = 0.5, limiter = 'stiffen' }"
-    words = [small_scene, "--out", "out", "--quiet", "--set", "scene.frames=[1, 60]", soft]
+    explicit = "solver.integrator=symplectic_euler"
+    words = [
+        small_scene,
+        "--out",
+        "out",
+        "--quiet",
+        "--set",
+        "scene.frames=[1, 60]",
+        soft,
+        explicit,
+    ]
     line = complaint(run_bake(*words, "solver.substeps=1"), 2)
     least = line.partition("at least ")[2].partition(" ")[0]
     line = complaint(run_bake(*words, f"solver.substeps={least}"), 3)

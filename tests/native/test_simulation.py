@@ -24,6 +24,15 @@ def test_a_simulation_starts_at_rest_at_the_first_frame_of_its_scene(sheet):
     assert simulation.vertex_count(0) == 36
     assert np.array_equal(positions_of(simulation).ravel(), np.array(sheet.positions))
     assert simulation.certificate()["max_strain"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_safe_time_step_is_a_frame_where_any_step_is_stable_and_else_it_is_kept(sheet):
+    scene = json.loads(sheet.scene())
+    simulation = boucle_core.Simulation(json.dumps(scene), [sheet.mesh()])
+    assert simulation.safe_time_step == pytest.approx(1 / 24)
+    assert simulation.substeps > 0
+    scene["solver"] = {"integrator": "symplectic_euler"}
+    simulation = boucle_core.Simulation(json.dumps(scene), [sheet.mesh()])
     assert 0.0 < simulation.safe_time_step < 1 / 24
     assert simulation.substeps >= 1 / 24 / simulation.safe_time_step
 
@@ -58,6 +67,57 @@ def test_a_certificate_is_a_row_of_the_report_without_seconds(simulation):
     assert certificate["intersections"] is None
     assert len(certificate["hash"]) == 16
     assert int(certificate["hash"], 16) >= 0
+
+
+def held_sheet(make_sheet, limiter, integrator="bdf2", pull=0.0, **springs):
+    """A sheet of 6 x 6 whose upper corners move apart in the first frame."""
+    sheet = make_sheet()
+    scene = json.loads(sheet.scene(springs={"limiter": limiter, **springs}))
+    scene["solver"] = {"integrator": integrator}
+    simulation = boucle_core.Simulation(json.dumps(scene), [sheet.mesh()])
+    targets = np.array(sheet.positions).reshape(-1, 3)
+    targets[sheet.top_corners[1], 0] += pull
+    simulation.set_pin_targets(0, targets)
+    return simulation
+
+
+@pytest.mark.parametrize("limiter", ["none", "stiffen", "provot", "project"])
+@pytest.mark.parametrize("integrator", ["bdf2", "implicit_euler"])
+def test_implicit_steps_hold_the_cloth_with_every_limiter(make_sheet, limiter, integrator):
+    simulation = held_sheet(make_sheet, limiter, integrator)
+    certificates = [simulation.advance() for _ in range(24)]
+    assert all(row["iterations"] >= row["substeps"] > 0 for row in certificates)
+    assert max(row["max_strain"] for row in certificates) < 0.1
+    assert all("overstretched" not in row for row in certificates)
+
+
+@pytest.mark.parametrize("integrator", ["bdf2", "symplectic_euler"])
+@pytest.mark.parametrize("limiter", ["stiffen", "provot", "project"])
+def test_edges_over_the_deformation_rate_are_counted_and_named(make_sheet, limiter, integrator):
+    simulation = held_sheet(make_sheet, limiter, integrator, pull=0.6)
+    assert simulation.overstretched_edges(0) == []
+    row = [simulation.advance() for _ in range(3)][-1]
+    edges = simulation.overstretched_edges(0)
+    assert row["overstretched_count"] == len(edges) >= 5  # the five edges between the pins
+    strains = [strain for _, _, strain in edges]
+    assert strains == sorted(strains, reverse=True) and strains[-1] > 0.101
+    assert strains[0] == pytest.approx(row["max_strain"], abs=1e-12)
+    named = [(*edge["vertices"], edge["strain"]) for edge in row["overstretched"]]
+    assert named == edges[:8]
+    assert {edge["cloth"] for edge in row["overstretched"]} == {"sheet"}
+    strain = np.empty(36, dtype=np.float32)
+    simulation.read_strain(0, strain)
+    for one, other, value in edges:
+        assert max(strain[one], strain[other]) >= np.float32(value)
+    over = {vertex for one, other, _ in edges for vertex in (one, other)}
+    assert over == set(np.flatnonzero(strain > 0.101))
+
+
+def test_without_a_limiter_no_edge_is_named(make_sheet):
+    simulation = held_sheet(make_sheet, "none", pull=0.6)
+    row = simulation.advance()
+    assert row["max_strain"] > 0.11
+    assert "overstretched" not in row and simulation.overstretched_edges(0) == []
 
 
 def test_the_same_input_gives_the_same_bits_for_any_number_of_threads(make_sheet):

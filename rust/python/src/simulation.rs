@@ -154,13 +154,11 @@ impl Simulation {
     }
 
     fn advance<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let certificate = self.with(py, Assembly::advance)?;
-        row(py, &certificate)
+        self.row(py, Assembly::advance)
     }
 
     fn certificate<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let certificate = self.with(py, |assembly| Ok(assembly.simulation.certificate()))?;
-        row(py, &certificate)
+        self.row(py, |assembly| Ok(assembly.simulation.certificate()))
     }
 
     fn read_positions(
@@ -189,6 +187,16 @@ impl Simulation {
         let index = self.cloth(py, cloth)?.0;
         let strain = self.with(py, |assembly| Ok(assembly.simulation.vertex_strain(index)))?;
         buffers::write_numbers(out, &strain)
+    }
+
+    fn overstretched_edges(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+    ) -> PyResult<Vec<(u32, u32, f64)>> {
+        let index = self.cloth(py, cloth)?.0;
+        let edges = self.with(py, |assembly| Ok(assembly.simulation.overstretched_edges(index)))?;
+        Ok(edges.iter().map(|edge| (edge.ends[0], edge.ends[1], edge.strain)).collect())
     }
 
     fn read_springs<'py>(&mut self, py: Python<'py>, cloth: i64) -> PyResult<SpringBytes<'py>> {
@@ -228,6 +236,19 @@ impl Simulation {
             self.assembly = taken;
         }
         outcome
+    }
+
+    /// The certificate that some work gives, as a row of the report.
+    fn row<'py>(
+        &mut self,
+        py: Python<'py>,
+        work: impl Send + FnOnce(&mut Assembly) -> Result<Certificate, Error>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let row = self.with(py, |assembly| {
+            let row = FrameRow::new(&work(assembly)?, None);
+            Ok(row.naming_overstretched(&assembly.simulation))
+        })?;
+        parse_json(py, &row.to_json())
     }
 
     fn assembly(&self, py: Python<'_>) -> PyResult<&Assembly> {
@@ -271,11 +292,6 @@ pub(crate) fn thread_count(py: Python<'_>, threads: i64) -> PyResult<usize> {
 fn broken(py: Python<'_>) -> PyErr {
     let message = "the simulation was broken by an earlier fault of Boucle's own; make a new one";
     raise_internal(py, message)
-}
-
-/// A certificate as a row of the report.
-fn row<'py>(py: Python<'py>, certificate: &Certificate) -> PyResult<Bound<'py, PyAny>> {
-    parse_json(py, &FrameRow::new(certificate, None).to_json())
 }
 
 /// JSON as Python objects.

@@ -174,7 +174,8 @@ impl Bake {
         let seconds = self.frame_began.elapsed().as_secs_f64();
         self.report.spend(seconds);
         if is_kept {
-            self.report.push(&FrameRow::new(certificate, Some(seconds)));
+            let row = FrameRow::new(certificate, Some(seconds));
+            self.report.push(&row.naming_overstretched(&self.assembly.simulation));
             if let Err(error) = self.folder.write_report(&self.report) {
                 self.report.pop();
                 self.folder.truncate(self.report.rows().len());

@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use boucle_solver::{Certificate, Cloth};
+use boucle_solver::{Certificate, Cloth, Simulation};
 use serde::Serialize;
 
 use crate::atomic::{self, Durability};
@@ -33,6 +33,20 @@ impl From<&Cloth> for ClothRow {
             springs: cloth.springs.len(),
         }
     }
+}
+
+/// How many overstretched edges a row names.
+const MOST_NAMED: usize = 8;
+
+/// An edge that is longer than its cloth allows.
+#[derive(Clone, Debug, Serialize)]
+pub struct OverstretchedRow {
+    /// The name of its cloth.
+    pub cloth: String,
+    /// Its vertices.
+    pub vertices: [u32; 2],
+    /// Its elongation `L/L0 - 1`.
+    pub strain: f64,
 }
 
 /// The certificate of a frame as the report has it.
@@ -63,6 +77,17 @@ pub struct FrameRow {
     pub potential_energy: f64,
     /// XXH3-64 over all positions (f64), 16 hexadecimal digits.
     pub hash: String,
+    /// How many edges are longer than the deformation rate of their cloth allows; left out if there are none.
+    #[serde(skip_serializing_if = "is_none")]
+    pub overstretched_count: usize,
+    /// The worst of them, the worst first; left out if there are none.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub overstretched: Vec<OverstretchedRow>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks so")]
+fn is_none(count: &usize) -> bool {
+    *count == 0
 }
 
 impl FrameRow {
@@ -82,7 +107,32 @@ impl FrameRow {
             kinetic_energy: certificate.kinetic_energy,
             potential_energy: certificate.potential_energy,
             hash: format!("{:016x}", certificate.hash),
+            overstretched_count: 0,
+            overstretched: Vec::new(),
         }
+    }
+
+    /// The same row with the edges that are overstretched at the state which the certificate is of.
+    #[must_use]
+    pub fn naming_overstretched(mut self, simulation: &Simulation) -> Self {
+        for index in 0..simulation.cloth_count() {
+            let cloth = simulation.cloth(index);
+            // Mostly there are none, which the certificate knows.
+            if self.max_strain <= cloth.material.deformation_rate {
+                continue;
+            }
+            let edges = simulation.overstretched_edges(index);
+            self.overstretched_count += edges.len();
+            let worst = edges.iter().take(MOST_NAMED).map(|edge| OverstretchedRow {
+                cloth: cloth.name.clone(),
+                vertices: edge.ends,
+                strain: edge.strain,
+            });
+            self.overstretched.extend(worst);
+        }
+        self.overstretched.sort_by(|one, other| other.strain.total_cmp(&one.strain));
+        self.overstretched.truncate(MOST_NAMED);
+        self
     }
 
     /// The row as JSON.

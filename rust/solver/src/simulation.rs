@@ -17,6 +17,7 @@ use crate::law::spring::Law;
 use crate::limit::Limit;
 use crate::material::SpringKind;
 use crate::method::Method;
+use crate::overstretch::{OverstretchedEdge, overstretched};
 use crate::perturbation::perturb;
 use crate::pins::Pins;
 use crate::settings::{MOST_SUBSTEPS, Settings, StepSize};
@@ -301,6 +302,13 @@ impl Simulation {
             }
         }
         strain
+    }
+
+    /// The mesh edges of a cloth that are longer than its deformation rate allows, by more than a tenth of a percent of
+    /// their rest length; the worst first. None where the limiter is [`Limiter::None`](crate::Limiter::None).
+    #[must_use]
+    pub fn overstretched_edges(&self, cloth: usize) -> Vec<OverstretchedEdge> {
+        overstretched(&self.cloths[cloth], self.bases[cloth], &self.state)
     }
 
     /// The present stiffness (N/m) of each spring of a cloth: what equation 6 makes of it, if it is the limiter.

@@ -231,8 +231,10 @@ fn a_step_that_becomes_unstable_names_its_frame_and_keeps_those_before_it() {
         "cloth.sheet.springs={ stretch = 5, shear = 1, bend = 0.1, limiter = \"stiffen\" }",
         "scene.frames=[1, 60]",
     ];
+    // Only explicit steps can be too long.
+    let explicit = "solver.integrator=symplectic_euler";
     let with = |substeps: &str| {
-        let overrides = [soft[0], soft[1], substeps].map(str::to_owned).to_vec();
+        let overrides = [soft[0], soft[1], explicit, substeps].map(str::to_owned).to_vec();
         Request { overrides, ..place.request("out") }
     };
     let run = |request: &Request| bake(request, &mut |_| ControlFlow::Continue(()));
@@ -260,4 +262,43 @@ fn names_that_cannot_name_a_file_are_refused() {
         assert!(error.to_string().contains("cloth.0.name = "), "{error}");
         assert_eq!(error.exit_code(), 2);
     }
+}
+
+#[test]
+fn edges_that_pins_alone_pull_too_far_are_counted_and_the_worst_are_named() {
+    let scene = r#"
+[scene]
+frames = [1, 4]
+[[cloth]]
+name = "held"
+grid = { size = [1, 1], vertices = [6, 6], plane = "xz" }
+pins = ["left", { names = ["right"], motion = [{ frame = 1 }, { frame = 3, location = [0.5, 0, 0] }] }]
+[[cloth]]
+name = "free"
+grid = { size = [1, 1], vertices = [3, 3], plane = "xy" }
+"#;
+    let place = Place::new(scene);
+    whole(&place.request("out"));
+    let report: serde_json::Value =
+        serde_json::from_slice(&place.bytes("out/report.json")).expect("strict JSON");
+    let frames = report["frames"].as_array().expect("rows");
+    assert!(frames[0].get("overstretched").is_none() && frames[0]["frame"] == 1);
+    // Six rows of five edges each, pulled from 1 m to 1.5 m.
+    let last = &frames[3];
+    assert!(last["overstretched_count"].as_u64().is_some_and(|count| count >= 6), "{last}");
+    let worst = last["overstretched"].as_array().expect("edges");
+    assert!((6..=8).contains(&worst.len()));
+    let strains: Vec<f64> =
+        worst.iter().map(|edge| edge["strain"].as_f64().expect("a strain")).collect();
+    assert!(strains.is_sorted_by(|one, other| one >= other), "{strains:?}");
+    assert_eq!(worst[0]["strain"], last["max_strain"]);
+    assert!(worst.iter().all(|edge| edge["cloth"] == "held"));
+    assert_eq!(worst[0]["vertices"].as_array().map(Vec::len), Some(2));
+
+    let unlimited =
+        scene.replace("plane = \"xz\" }\n", "plane = \"xz\" }\nsprings = { limiter = \"none\" }\n");
+    let place = Place::new(&unlimited);
+    whole(&place.request("out"));
+    let text = String::from_utf8(place.bytes("out/report.json")).expect("text");
+    assert!(!text.contains("overstretched"));
 }

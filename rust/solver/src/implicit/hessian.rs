@@ -97,7 +97,8 @@ fn tangent(
     let is_spring = if rest_length > 0.0 { 1.0 } else { 0.0 };
     let length = (x * x + y * y + z * z).sqrt().max(f32::MIN_POSITIVE);
     let ratio = length / rest_length.max(f32::MIN_POSITIVE);
-    let is_stiffer = ratio > law.stiffen_beyond as f32;
+    // Where a diagonal has no spring the ratio is beyond all bounds, and 0 times infinity would be NaN.
+    let is_stiffer = rest_length > 0.0 && ratio > law.stiffen_beyond as f32;
     let (tension, slope) =
         if is_stiffer { (ratio - 1.0, 2.0 * ratio - 1.0) } else { (1.0 - 1.0 / ratio, 1.0) };
     let tension = tension.max(0.0);

@@ -3,7 +3,7 @@
 use crate::cloth::Cloth;
 use crate::implicit::{Implicit, Memory, Rule};
 use crate::integrator::{Integrator, Scratch, explicit};
-use crate::settings::IntegratorKind;
+use crate::settings::{IntegratorKind, Settings};
 use crate::state::State;
 use crate::system::System;
 
@@ -15,16 +15,20 @@ pub(crate) enum Method {
 
 impl Method {
     pub(crate) fn new(
-        kind: IntegratorKind,
+        settings: &Settings,
         cloths: &[Cloth],
         system: &System,
         state: &State,
     ) -> Self {
-        if let Some(rule) = explicit(kind) {
+        if let Some(rule) = explicit(settings.integrator) {
             return Self::Explicit(rule, Box::new(Scratch::new(state)));
         }
-        let rule = if kind == IntegratorKind::Bdf2 { Rule::Bdf2 } else { Rule::ImplicitEuler };
-        Self::Implicit(Box::new(Implicit::new(rule, cloths, system, state)))
+        let rule = match settings.integrator {
+            IntegratorKind::Bdf2 => Rule::Bdf2,
+            _ => Rule::ImplicitEuler,
+        };
+        let implicit = Implicit::new(rule, settings.linear_solver, cloths, system, state);
+        Self::Implicit(Box::new(implicit))
     }
 
     /// What the next step depends on besides the state.

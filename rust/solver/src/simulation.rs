@@ -1,5 +1,7 @@
 //! A simulation as the outside holds it: cloths that move frame by frame.
 
+mod plan;
+
 use std::fmt;
 
 use boucle_geometry::Vector;
@@ -12,7 +14,6 @@ use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::force::Wind;
 use crate::implicit::{Accuracy, Memory};
-use crate::integrator::explicit;
 use crate::law::spring::Law;
 use crate::limit::Limit;
 use crate::material::SpringKind;
@@ -20,14 +21,11 @@ use crate::method::Method;
 use crate::overstretch::{OverstretchedEdge, overstretched};
 use crate::perturbation::perturb;
 use crate::pins::Pins;
-use crate::settings::{MOST_SUBSTEPS, Settings, StepSize};
-use crate::stability::{Spectrum, stiffening};
+use crate::settings::Settings;
+use crate::stability::Spectrum;
 use crate::state::State;
 use crate::step::Step;
 use crate::system::System;
-
-/// How much of the largest stable step `auto` takes.
-const AUTO_STEP: f64 = 0.95;
 
 /// Cloths in motion, at the end of a frame.
 pub struct Simulation {
@@ -91,14 +89,14 @@ impl Simulation {
         let system = System::new(&cloths, winds, settings.gravity);
         let mut simulation = Self {
             pins: Pins::new(pinned, &state),
-            method: Method::new(settings.integrator, &cloths, &system, &state),
+            method: Method::new(&settings, &cloths, &system, &state),
             system,
             spectrum: Spectrum::default(),
             limits: Vec::new(),
             good: state.clone(),
             good_memory: None,
             frame: settings.first_frame,
-            accuracy: Accuracy { tolerance: settings.tolerance, size: size_of(&state) },
+            accuracy: Accuracy { tolerance: settings.tolerance, size: plan::size_of(&state) },
             substeps_taken: 0,
             iterations_taken: 0,
             cloths,
@@ -132,31 +130,6 @@ impl Simulation {
     #[must_use]
     pub fn cloth(&self, cloth: usize) -> &Cloth {
         &self.cloths[cloth]
-    }
-
-    /// The largest step (s) that is stable and that every limiter keeps up with, at most a frame; 0 if there is none.
-    #[must_use]
-    pub fn safe_time_step(&self) -> f64 {
-        self.stable_step().min(self.limited_step())
-    }
-
-    /// The largest stable step (s) of the springs and the wind as they are now, at most a frame; 0 if there is none.
-    fn stable_step(&self) -> f64 {
-        let Some(rule) = explicit(self.settings.integrator) else {
-            return self.frame_duration();
-        };
-        let factor = stiffening(&self.cloths, |cloth| self.longest_ratio(cloth));
-        let System { air, inverse_masses, .. } = &self.system;
-        let fall = self.settings.gravity.norm() * self.frame_duration();
-        let pressure = air.pressure_damping(&self.state, inverse_masses, fall);
-        let spectrum = self.spectrum.stiffened(factor).damped(pressure);
-        spectrum.largest_step(rule, self.frame_duration())
-    }
-
-    /// Steps that the next frame takes; 0 if there is no stable number.
-    #[must_use]
-    pub fn substeps(&self) -> u32 {
-        self.plan().unwrap_or(0)
     }
 
     /// Where the pins of a cloth are to be at the end of the next frame (m): a position for each vertex, of which
@@ -355,6 +328,7 @@ impl Simulation {
         self.state = checkpoint.state;
         self.frame = checkpoint.frame;
         self.substeps_taken = checkpoint.substeps;
+        self.iterations_taken = 0;
         let pinned = checkpoint.is_pinned.iter().enumerate().filter(|&(_, &is_pinned)| is_pinned);
         self.pins = Pins::new(pinned.map(|(particle, _)| particle as u32), &self.state);
         self.follow_pins();
@@ -368,15 +342,6 @@ impl Simulation {
     fn particles(&self, cloth: usize) -> std::ops::Range<usize> {
         let base = self.bases[cloth] as usize;
         base..base + self.cloths[cloth].positions.len()
-    }
-
-    /// Largest ratio of length to rest length over the springs of a cloth.
-    fn longest_ratio(&self, cloth: usize) -> f64 {
-        let (cloth, base) = (&self.cloths[cloth], self.bases[cloth]);
-        let ratio = |spring: &crate::law::Spring| {
-            length(&self.state, spring.ends, base) / spring.rest_length
-        };
-        cloth.springs.iter().map(ratio).fold(0.0, f64::max)
     }
 
     /// Rebuilds what depends on which particles are pinned.
@@ -395,62 +360,6 @@ impl Simulation {
             placed.filter_map(|(cloth, &base)| Limit::of(cloth, base, inverse_masses)).collect();
         self.spectrum = Spectrum::of(&self.cloths, &self.system);
     }
-
-    /// The longest step (s) that every cloth's limiter keeps up with.
-    fn limited_step(&self) -> f64 {
-        if self.method.is_implicit() {
-            return f64::INFINITY;
-        }
-        let gravity = self.settings.gravity.norm();
-        let steps = self.cloths.iter().map(|cloth| Limit::longest_step(cloth, gravity));
-        steps.fold(f64::INFINITY, f64::min)
-    }
-
-    /// Steps of the next frame, or why there is no such number.
-    fn plan(&self) -> Result<u32> {
-        let duration = self.frame_duration();
-        let asked = match self.settings.step_size {
-            StepSize::Auto => None,
-            StepSize::Substeps(count) => Some(f64::from(count)),
-            // A step that divides the frame but for rounding is not cut once more.
-            StepSize::Seconds(step) => Some((duration / step * (1.0 - 1e-9)).ceil().max(1.0)),
-        };
-        let allowed = |count: f64| {
-            if count <= f64::from(MOST_SUBSTEPS) {
-                return Ok(count as u32);
-            }
-            let integrator = self.settings.integrator.name();
-            Err(Error::TooManySubsteps { substeps: count, limit: MOST_SUBSTEPS, integrator })
-        };
-        if let (Some(memory), None) = (self.method.memory(), asked) {
-            let change = self.pins.largest_change(&self.state, duration);
-            return Ok(self.accuracy.plan(memory.substeps, change, duration));
-        }
-        if let Some(count) = asked
-            && (self.settings.allow_unstable || self.method.is_implicit())
-        {
-            return allowed(count);
-        }
-        let bound = self.stable_step();
-        match asked {
-            None => allowed((duration / (AUTO_STEP * bound).min(self.limited_step())).ceil()),
-            Some(count) if duration / count <= bound * (1.0 + 1e-9) => allowed(count),
-            Some(count) => {
-                let substeps = (duration / bound).ceil() as u64;
-                Err(Error::Unstable { step: duration / count, bound, substeps })
-            }
-        }
-    }
-}
-
-/// Root mean square distance (m) of the particles from their middle.
-fn size_of(state: &State) -> f64 {
-    let count = state.len() as f64;
-    let spreads = state.position.0.iter().map(|axis| {
-        let middle = axis.iter().sum::<f64>() / count;
-        axis.iter().map(|x| (x - middle) * (x - middle)).sum::<f64>() / count
-    });
-    spreads.sum::<f64>().sqrt().max(f64::MIN_POSITIVE)
 }
 
 /// The first particle that left the finite numbers, or the space in which numbers are fine enough.

@@ -1,6 +1,6 @@
 //! The Hessian of an implicit step, frozen at one state and never written down as a matrix.
 //!
-//! A spring of present length l, rest length L, direction n and force T(l) adds, for d = d_i - d_j,
+//! A spring of present length l, rest length L, direction n and force T(l) adds, for `d = d_i - d_j`,
 //!
 //! ```text
 //! alpha n (n·d) + beta d        beta = max(0, T/l) + kd/h'  (relative damping)

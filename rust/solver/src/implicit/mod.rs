@@ -32,6 +32,7 @@ mod taut;
 use crate::cloth::Cloth;
 use crate::force::AirScratch;
 use crate::linear::{ConjugateGradient, Field, Operator, Stop};
+use crate::settings::LinearSolver;
 use crate::state::State;
 use crate::system::{Motion, Rate, System};
 use hessian::Hessian;
@@ -90,7 +91,13 @@ pub(crate) struct Implicit {
 }
 
 impl Implicit {
-    pub(crate) fn new(rule: Rule, cloths: &[Cloth], system: &System, state: &State) -> Self {
+    pub(crate) fn new(
+        rule: Rule,
+        linear_solver: LinearSolver,
+        cloths: &[Cloth],
+        system: &System,
+        state: &State,
+    ) -> Self {
         let count = state.len();
         let bases = cloths.iter().scan(0, |next, cloth| {
             let base = *next;
@@ -104,7 +111,7 @@ impl Implicit {
         Self {
             rule,
             memory: Memory::new(state, taut.edge_count()),
-            preconditioner: Preconditioner::new(cloths),
+            preconditioner: Preconditioner::new(cloths, linear_solver),
             hessian: Hessian::new(&system.layout, count),
             taut,
             pieces: Pieces::new(count, springs),

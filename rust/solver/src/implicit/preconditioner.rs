@@ -3,9 +3,20 @@
 use boucle_geometry::Vector;
 
 use crate::cloth::Cloth;
-use crate::linear::{Field, Graph, Inverse, Laplacian, Ldlt, Operator};
+use crate::linear::{Field, Graph, Inverse, Laplacian, Ldlt, Multigrid, Operator};
 use crate::material::SpringKind;
+use crate::settings::LinearSolver;
 use crate::system::System;
+
+/// Particles up to which `Auto` eliminates: beyond, a factor takes more memory than the rest of a cloth.
+const MOST_EXACT: usize = 400_000;
+
+/// What stands for the inverse.
+#[derive(Debug)]
+enum Kind {
+    Exact(Ldlt),
+    Cycle(Multigrid),
+}
 
 /// P on the springs along edges and across faces. Bend springs are left to H: the factor is half as large without.
 #[derive(Debug)]
@@ -16,14 +27,15 @@ pub(super) struct Preconditioner {
     springs: Vec<[f64; 2]>,
     /// Rest positions (m), to order by.
     positions: Vec<Vector>,
-    /// What is factored, and for which step (s); 0 for none.
-    factored: Option<Ldlt>,
+    /// What is ready, and for which step (s); 0 for none.
+    inverse: Option<Kind>,
+    choice: LinearSolver,
     step: f64,
     matrix: Laplacian,
 }
 
 impl Preconditioner {
-    pub(super) fn new(cloths: &[Cloth]) -> Self {
+    pub(super) fn new(cloths: &[Cloth], choice: LinearSolver) -> Self {
         let (mut pairs, mut springs, mut positions) = (Vec::new(), Vec::new(), Vec::new());
         for cloth in cloths {
             let base = positions.len() as u32;
@@ -39,7 +51,8 @@ impl Preconditioner {
             pairs,
             springs,
             positions,
-            factored: None,
+            inverse: None,
+            choice,
             step: 0.0,
             matrix: Laplacian::default(),
         }
@@ -52,17 +65,33 @@ impl Preconditioner {
             self.matrix = self.matrix(system, h);
             self.step = h;
         }
-        let Self { factored, graph, positions, matrix, .. } = self;
-        if let (Some(ldlt), false) = (factored.as_mut(), is_fresh) {
-            ldlt.refactor(graph, matrix);
+        let is_exact = match self.choice {
+            LinearSolver::Auto => self.positions.len() <= MOST_EXACT,
+            LinearSolver::Ldlt => true,
+            LinearSolver::Multigrid => false,
+        };
+        let Self { inverse, graph, positions, matrix, pairs, .. } = self;
+        match inverse {
+            Some(_) if is_fresh => {}
+            Some(Kind::Exact(ldlt)) => ldlt.refactor(graph, matrix),
+            _ if is_exact => *inverse = Some(Kind::Exact(Ldlt::new(graph, positions, matrix))),
+            _ => {
+                let is_pinned = |particle: usize| system.is_pinned(particle);
+                *inverse = Some(Kind::Cycle(Multigrid::new(pairs, matrix, positions, is_pinned)));
+            }
         }
-        factored.get_or_insert_with(|| Ldlt::new(graph, positions, matrix))
+        self.both().0
     }
 
     /// The inverse of the last step, and the matrix itself.
     pub(super) fn both(&mut self) -> (&mut dyn Inverse, Forward<'_>) {
-        let Self { factored, graph, positions, matrix, .. } = self;
-        let inverse = factored.get_or_insert_with(|| Ldlt::new(graph, positions, matrix));
+        let Self { inverse, graph, positions, matrix, .. } = self;
+        let inverse =
+            inverse.get_or_insert_with(|| Kind::Exact(Ldlt::new(graph, positions, matrix)));
+        let inverse: &mut dyn Inverse = match inverse {
+            Kind::Exact(ldlt) => ldlt,
+            Kind::Cycle(cycle) => cycle,
+        };
         (inverse, Forward { graph, matrix })
     }
 

@@ -7,8 +7,8 @@
 //! 1/2 sum_e k_e L_e² (n·E n)² / A          whose C = sum_e k_e L_e² n n n n / A
 //! ```
 //!
-//! and the invariant C_iijj = sum k L²/A of the grid of squares is 2, 4 and 8 times k for stretch, shear and bend
-//! springs. On any mesh, a spring that stands for an area A_e gets
+//! and the invariant `C_iijj = sum k L²/A` of the grid of squares is 2, 4 and 8 times k for stretch, shear and bend
+//! springs. On any mesh, a spring that stands for an area `A_e` gets
 //!
 //! ```text
 //! k_e = 2 k A_e/L_e²      4 k A_e/L_e²      8 k A_e/L_e²
@@ -20,14 +20,14 @@
 //!
 //! Source: Van Gelder 1998 for the areas; Lloyd, Székely & Harders 2007 for matching the tensor.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use boucle_geometry::{Mesh, Vector};
 
 use super::Spring;
 use crate::material::SpringKind;
 
-/// C_iijj of a grid of squares for each unit of stiffness, by kind.
+/// `C_iijj` of a grid of squares for each unit of stiffness, by kind.
 const INVARIANT: [f64; 3] = [2.0, 4.0, 8.0];
 
 /// Replaces the membrane stiffness of springs by their own.
@@ -40,7 +40,7 @@ pub(super) fn from_membrane(mesh: &Mesh, positions: &[Vector], springs: &mut [Sp
 
 /// The area (m²) that each spring stands for.
 fn areas(mesh: &Mesh, positions: &[Vector], springs: &[Spring]) -> Vec<f64> {
-    let number_of: HashMap<[u32; 2], usize> =
+    let number_of: BTreeMap<[u32; 2], usize> =
         springs.iter().enumerate().map(|(number, spring)| (spring.ends, number)).collect();
     let find = |a: u32, b: u32, kind: SpringKind| {
         let number = number_of.get(&[a.min(b), a.max(b)]).copied();
@@ -89,7 +89,7 @@ fn areas(mesh: &Mesh, positions: &[Vector], springs: &[Spring]) -> Vec<f64> {
 }
 
 /// The third corner of the triangle on each directed side.
-fn opposite_corners(mesh: &Mesh) -> HashMap<(u32, u32), u32> {
+fn opposite_corners(mesh: &Mesh) -> BTreeMap<(u32, u32), u32> {
     let triangles = mesh.faces().filter(|corners| corners.len() == 3);
     triangles
         .flat_map(|corners| {
@@ -162,7 +162,8 @@ mod tests {
             let [a, b] = spring.ends.map(|end| positions[end as usize]);
             let is_border = [0, 1].into_iter().any(|axis| {
                 let end = [0.6, 0.5][axis];
-                a[axis] == b[axis] && (a[axis] == 0.0 || (a[axis] - end).abs() < 1e-12)
+                (a[axis] - b[axis]).abs() < 1e-12
+                    && (a[axis].abs() < 1e-12 || (a[axis] - end).abs() < 1e-12)
             });
             let factor = match spring.kind {
                 SpringKind::Stretch if is_border => 0.5,

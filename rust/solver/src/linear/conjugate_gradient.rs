@@ -97,7 +97,14 @@ impl ConjugateGradient {
         *reference = reference.max(rz);
         for iteration in 0..stop.most_iterations {
             let is_done = rz <= stop.tolerance * stop.tolerance * *reference;
-            if !(rz > 0.0) || (is_done && iteration >= stop.least_iterations) {
+            if rz.is_nan() {
+                // What is lost must be seen to be lost.
+                for axis in &mut solution.0 {
+                    axis.fill(f32::NAN);
+                }
+                return iteration.max(1);
+            }
+            if rz <= 0.0 || (is_done && iteration >= stop.least_iterations) {
                 return iteration;
             }
             operator.apply(direction, product);

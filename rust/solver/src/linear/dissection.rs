@@ -17,6 +17,7 @@ const LEAF: usize = 20;
 
 /// A block of particles that are eliminated together: a separator, or a leaf.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::struct_field_names, reason = "a block among blocks, a place among places")]
 pub(crate) struct Block {
     /// Its particles, by their places in the order.
     pub(crate) own: Range<u32>,

@@ -129,7 +129,8 @@ impl Inverse for Multigrid {
             let level = &mut finer[index];
             level.start();
             level.smooth();
-            let below = coarser.first_mut().map_or(&mut *coarse_residual, |next| &mut next.residual);
+            let below =
+                coarser.first_mut().map_or(&mut *coarse_residual, |next| &mut next.residual);
             level.restrict(below);
         }
         coarsest.apply_inverse(coarse_residual, coarse_solution);
@@ -282,9 +283,7 @@ impl Level {
                 factors
             };
             let Self { diagonal, solution, direction, left, .. } = self;
-            for ((x, direction), left) in
-                solution.0.iter_mut().zip(&mut direction.0).zip(&left.0)
-            {
+            for ((x, direction), left) in solution.0.iter_mut().zip(&mut direction.0).zip(&left.0) {
                 let chunks = x.par_chunks_mut(CHUNK).zip(direction.par_chunks_mut(CHUNK));
                 let rest = left.par_chunks(CHUNK).zip(diagonal.par_chunks(CHUNK));
                 chunks.zip(rest).for_each(|((x, direction), (left, diagonal))| {

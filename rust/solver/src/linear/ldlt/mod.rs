@@ -1,4 +1,4 @@
-//! Block LDLᵀ: the exact inverse of the constant matrix, for three right-hand sides at once.
+//! Block `LDLᵀ`: the exact inverse of the constant matrix, for three right-hand sides at once.
 //!
 //! Blocks of the [`Dissection`](super::dissection) are eliminated children first. With S the dense matrix of a block
 //! after its descendants are gone, and A the rows below it (its *front*: particles eliminated later that it touches),

@@ -62,6 +62,9 @@ struct Sweep<'a> {
     work: &'a [usize],
 }
 
+/// A subtree and its vectors.
+type Part<'v> = (usize, &'v mut [f32]);
+
 /// The three axes of a front's vector.
 fn axes(vector: &[f32]) -> [&[f32]; 3] {
     let (x, rest) = vector.split_at(vector.len() / 3);
@@ -92,7 +95,7 @@ impl Sweep<'_> {
         &self,
         front: &Front,
         vectors: &'v mut [f32],
-    ) -> (Option<[(usize, &'v mut [f32]); 2]>, &'v mut [f32]) {
+    ) -> (Option<[Part<'v>; 2]>, &'v mut [f32]) {
         let (below, own) = vectors.split_at_mut(vectors.len() - front.vector_count());
         let halves = front.block.children.map(|[lower, upper]| {
             let middle = self.symbolic.fronts[upper as usize].first_vectors - front.first_vectors;

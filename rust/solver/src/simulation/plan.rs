@@ -1,0 +1,106 @@
+//! How many steps the next frame takes.
+
+use super::Simulation;
+use crate::certificate::length;
+use crate::error::{Error, Result};
+use crate::integrator::explicit;
+use crate::limit::Limit;
+use crate::settings::{MOST_SUBSTEPS, StepSize};
+use crate::stability::stiffening;
+use crate::state::State;
+use crate::system::System;
+
+/// How much of the largest stable step `auto` takes.
+const AUTO_STEP: f64 = 0.95;
+
+impl Simulation {
+    /// The largest step (s) that is stable and that every limiter keeps up with, at most a frame; 0 if there is none.
+    #[must_use]
+    pub fn safe_time_step(&self) -> f64 {
+        self.stable_step().min(self.limited_step())
+    }
+
+    /// The largest stable step (s) of the springs and the wind as they are now, at most a frame; 0 if there is none.
+    fn stable_step(&self) -> f64 {
+        let Some(rule) = explicit(self.settings.integrator) else {
+            return self.frame_duration();
+        };
+        let factor = stiffening(&self.cloths, |cloth| self.longest_ratio(cloth));
+        let System { air, inverse_masses, .. } = &self.system;
+        let fall = self.settings.gravity.norm() * self.frame_duration();
+        let pressure = air.pressure_damping(&self.state, inverse_masses, fall);
+        let spectrum = self.spectrum.stiffened(factor).damped(pressure);
+        spectrum.largest_step(rule, self.frame_duration())
+    }
+
+    /// Steps that the next frame takes; 0 if there is no stable number.
+    #[must_use]
+    pub fn substeps(&self) -> u32 {
+        self.plan().unwrap_or(0)
+    }
+
+    /// Largest ratio of length to rest length over the springs of a cloth.
+    fn longest_ratio(&self, cloth: usize) -> f64 {
+        let (cloth, base) = (&self.cloths[cloth], self.bases[cloth]);
+        let ratio = |spring: &crate::law::Spring| {
+            length(&self.state, spring.ends, base) / spring.rest_length
+        };
+        cloth.springs.iter().map(ratio).fold(0.0, f64::max)
+    }
+
+    /// The longest step (s) that every cloth's limiter keeps up with.
+    fn limited_step(&self) -> f64 {
+        if self.method.is_implicit() {
+            return f64::INFINITY;
+        }
+        let gravity = self.settings.gravity.norm();
+        let steps = self.cloths.iter().map(|cloth| Limit::longest_step(cloth, gravity));
+        steps.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Steps of the next frame, or why there is no such number.
+    pub(super) fn plan(&self) -> Result<u32> {
+        let duration = self.frame_duration();
+        let asked = match self.settings.step_size {
+            StepSize::Auto => None,
+            StepSize::Substeps(count) => Some(f64::from(count)),
+            // A step that divides the frame but for rounding is not cut once more.
+            StepSize::Seconds(step) => Some((duration / step * (1.0 - 1e-9)).ceil().max(1.0)),
+        };
+        let allowed = |count: f64| {
+            if count <= f64::from(MOST_SUBSTEPS) {
+                return Ok(count as u32);
+            }
+            let integrator = self.settings.integrator.name();
+            Err(Error::TooManySubsteps { substeps: count, limit: MOST_SUBSTEPS, integrator })
+        };
+        if let (Some(memory), None) = (self.method.memory(), asked) {
+            let change = self.pins.largest_change(&self.state, duration);
+            return Ok(self.accuracy.plan(memory.substeps, change, duration));
+        }
+        if let Some(count) = asked
+            && (self.settings.allow_unstable || self.method.is_implicit())
+        {
+            return allowed(count);
+        }
+        let bound = self.stable_step();
+        match asked {
+            None => allowed((duration / (AUTO_STEP * bound).min(self.limited_step())).ceil()),
+            Some(count) if duration / count <= bound * (1.0 + 1e-9) => allowed(count),
+            Some(count) => {
+                let substeps = (duration / bound).ceil() as u64;
+                Err(Error::Unstable { step: duration / count, bound, substeps })
+            }
+        }
+    }
+}
+
+/// Root mean square distance (m) of the particles from their middle.
+pub(super) fn size_of(state: &State) -> f64 {
+    let count = state.len() as f64;
+    let spreads = state.position.0.iter().map(|axis| {
+        let middle = axis.iter().sum::<f64>() / count;
+        axis.iter().map(|x| (x - middle) * (x - middle)).sum::<f64>() / count
+    });
+    spreads.sum::<f64>().sqrt().max(f64::MIN_POSITIVE)
+}

@@ -6,6 +6,12 @@ use crate::pins::Pins;
 use crate::state::State;
 use crate::system::System;
 
+/// How often edges that limiters cannot hold are pulled, at the most: where pins alone force the strain, it is in vain.
+const PULLS: usize = 1;
+
+/// The same at the end of a frame, whose result is seen.
+const PULLS_AT_END: usize = 8;
+
 /// What a substep works with.
 pub(crate) struct Step<'a> {
     pub(crate) system: &'a System,
@@ -23,11 +29,21 @@ impl Step<'_> {
         if self.is_last {
             self.pins.arrive(state);
         }
-        for limit in limits {
-            if method.is_implicit() {
-                limit.hold(state, &self.system.inverse_masses, self.h);
-            } else {
-                limit.apply(state, &self.system.inverse_masses, self.h, self.is_last);
+        let inverse_masses = &self.system.inverse_masses;
+        match method {
+            Method::Explicit(..) => {
+                for limit in limits {
+                    limit.apply(state, inverse_masses, self.h, self.is_last);
+                }
+            }
+            Method::Implicit(implicit) => {
+                for _ in 0..if self.is_last { PULLS_AT_END } else { PULLS } {
+                    let is_held = |limit: &mut Limit| limit.hold(state, inverse_masses, self.h);
+                    if limits.iter_mut().map(is_held).fold(true, |all, held| all & held) {
+                        break;
+                    }
+                    implicit.pull(self.system, state);
+                }
             }
         }
     }

@@ -30,7 +30,7 @@ mod taut;
 
 use crate::cloth::Cloth;
 use crate::force::AirScratch;
-use crate::linear::{ConjugateGradient, Stop};
+use crate::linear::{ConjugateGradient, Field, Operator, Stop};
 use crate::state::State;
 use crate::system::{Motion, Rate, System};
 use hessian::Hessian;
@@ -50,12 +50,17 @@ pub(crate) enum Rule {
 /// Iterations of Newton at the most; the limiters mend what a snap leaves after them.
 const NEWTON: usize = 3;
 
-/// Conjugate gradients stop early: the error of the step is far larger than theirs. The floor is that of the first
-/// Newton iteration.
-const STOP: Stop = Stop { tolerance: 0.05, least_iterations: 6, most_iterations: 200 };
+/// Conjugate gradients stop early: the error of the step is far larger than theirs. Falling and swinging for 20 frames,
+/// a sheet of 64² ends 45 mm (root mean square) from where 48 steps a frame lead, and 39 mm with twice the iterations.
+const STOP: Stop = Stop { tolerance: 0.1, least_iterations: 3, most_iterations: 200 };
 
 /// What of the residual, measured by P⁻¹, may be left at the end of a step.
-const LEFT: f64 = 0.1;
+const LEFT: f64 = 0.2;
+
+/// Edges that are pulled are so much stiffer than in the time step, in at most so many rounds.
+const STIFFER: f64 = 30.0;
+const ROUNDS: usize = 6;
+const PULL: Stop = Stop { tolerance: 0.05, least_iterations: 3, most_iterations: 60 };
 
 /// An implicit integrator and all that it keeps between steps.
 #[derive(Debug)]
@@ -113,7 +118,7 @@ impl Implicit {
         for newton in 0..NEWTON {
             self.linearize(system, formula.step);
             let inverse = self.preconditioner.inverse(system, formula.step);
-            let operator = WithTaut { springs: self.hessian.on(&system.layout), taut: &self.taut };
+            let operator = WithTaut { matrix: self.hessian.on(&system.layout), taut: &self.taut };
             let stop = match newton {
                 0 => STOP,
                 _ => Stop { tolerance: LEFT, least_iterations: 0, ..STOP },
@@ -129,6 +134,50 @@ impl Implicit {
         self.memory.before.copy_from(state);
         self.memory.step = h;
         state.copy_from(&self.at);
+    }
+
+    /// Pulls edges that are still too long to their allowed length, in the metric of P: what the limiter cannot do
+    /// edge by edge, where a row of edges is stretched between two pins. Velocities stay.
+    ///
+    /// Augmented Lagrangian steps with edges [`STIFFER`] than in the time step, until the excess is a tenth.
+    pub(crate) fn pull(&mut self, system: &System, state: &mut State) {
+        let Self { taut, gradients, preconditioner, at, residual, base, .. } = self;
+        let mut tensions = vec![0.0; taut.edge_count()];
+        let mut moved = Field::zeros(state.len());
+        let mut product = Field::zeros(state.len());
+        at.position.copy_from(&state.position);
+        base.position.copy_from(&state.position);
+        let (inverse, matrix) = preconditioner.both();
+        let mut first = 0.0;
+        for _ in 0..ROUNDS {
+            taut.freeze(&at.position, &tensions, STIFFER, system);
+            let excess = taut.largest_excess(&at.position);
+            first = f64::max(first, excess);
+            if excess <= 0.1 * first {
+                break;
+            }
+            matrix.apply(&moved, &mut product);
+            for (out, product) in residual.position.0.iter_mut().zip(&product.0) {
+                for (i, (out, product)) in out.iter_mut().zip(product).enumerate() {
+                    *out = if system.is_pinned(i) { 0.0 } else { -f64::from(*product) };
+                }
+            }
+            taut.add_forces(&mut residual.position);
+            gradients.start();
+            gradients.take_residual(&residual.position);
+            let operator = WithTaut { matrix, taut };
+            self.iterations += gradients.solve(&operator, inverse, PULL);
+            taut.follow(&gradients.solution, &mut tensions);
+            for (axis, moved) in moved.0.iter_mut().enumerate() {
+                let moves = moved.iter_mut().zip(&gradients.solution.0[axis]);
+                let positions = at.position.0[axis].iter_mut().zip(&*base.position.0[axis]);
+                for ((moved, dx), (x, from)) in moves.zip(positions) {
+                    *moved += dx;
+                    *x = from + f64::from(*moved);
+                }
+            }
+        }
+        state.position.copy_from(&at.position);
     }
 
     fn formula(&self, h: f64) -> Formula {
@@ -184,7 +233,7 @@ impl Implicit {
                 *out = mass * (a - (x - target) * by_square);
             }
         }
-        taut.freeze(&at.position, &memory.tensions, system);
+        taut.freeze(&at.position, &memory.tensions, 1.0, system);
         taut.add_forces(&mut residual.position);
         gradients.take_residual(&residual.position);
         for (i, inertia) in hessian.inertia.iter_mut().enumerate() {

@@ -3,7 +3,7 @@
 use boucle_geometry::Vector;
 
 use crate::cloth::Cloth;
-use crate::linear::{Graph, Inverse, Laplacian, Ldlt};
+use crate::linear::{Field, Graph, Inverse, Laplacian, Ldlt, Operator};
 use crate::material::SpringKind;
 use crate::system::System;
 
@@ -19,6 +19,7 @@ pub(super) struct Preconditioner {
     /// What is factored, and for which step (s); 0 for none.
     factored: Option<Ldlt>,
     step: f64,
+    matrix: Laplacian,
 }
 
 impl Preconditioner {
@@ -33,22 +34,28 @@ impl Preconditioner {
             }
         }
         let graph = Graph::new(positions.len(), &pairs);
-        Self { graph, pairs, springs, positions, factored: None, step: 0.0 }
+        Self { graph, pairs, springs, positions, factored: None, step: 0.0, matrix: Laplacian::default() }
     }
 
     /// The inverse for steps of h' seconds.
     pub(super) fn inverse(&mut self, system: &System, h: f64) -> &mut dyn Inverse {
         let is_fresh = self.step.to_bits() == h.to_bits();
-        let matrix = (!is_fresh).then(|| self.matrix(system, h));
-        self.step = h;
-        let Self { factored, graph, positions, .. } = self;
-        if let (Some(ldlt), Some(matrix)) = (factored.as_mut(), &matrix) {
+        if !is_fresh {
+            self.matrix = self.matrix(system, h);
+            self.step = h;
+        }
+        let Self { factored, graph, positions, matrix, .. } = self;
+        if let (Some(ldlt), false) = (factored.as_mut(), is_fresh) {
             ldlt.refactor(graph, matrix);
         }
-        factored.get_or_insert_with(|| {
-            let none = Laplacian::default();
-            Ldlt::new(graph, positions, matrix.as_ref().unwrap_or(&none))
-        })
+        factored.get_or_insert_with(|| Ldlt::new(graph, positions, matrix))
+    }
+
+    /// The inverse of the last step, and the matrix itself.
+    pub(super) fn both(&mut self) -> (&mut dyn Inverse, Forward<'_>) {
+        let Self { factored, graph, positions, matrix, .. } = self;
+        let inverse = factored.get_or_insert_with(|| Ldlt::new(graph, positions, matrix));
+        (inverse, Forward { graph, matrix })
     }
 
     /// Factors anew at the next step: pins have changed.
@@ -64,5 +71,18 @@ impl Preconditioner {
         Laplacian::new(&self.pairs, weights.collect(), diagonal.collect(), |particle| {
             system.is_pinned(particle)
         })
+    }
+}
+
+/// The product with P itself.
+#[derive(Clone, Copy)]
+pub(super) struct Forward<'a> {
+    graph: &'a Graph,
+    matrix: &'a Laplacian,
+}
+
+impl Operator for Forward<'_> {
+    fn apply(&self, p: &Field, out: &mut Field) {
+        self.matrix.multiply(self.graph, p, out);
     }
 }

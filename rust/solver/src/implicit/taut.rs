@@ -14,7 +14,6 @@
 
 use rayon::prelude::*;
 
-use super::hessian::Product;
 use crate::cloth::Cloth;
 use crate::linear::{Field, Operator};
 use crate::material::{Limiter, SpringKind};
@@ -65,6 +64,8 @@ pub(super) struct Taut {
     /// Present tension of each edge.
     tensions: Vec<f64>,
     pulling: Vec<Pulling>,
+    /// Factor of kappa at the last freeze.
+    stiffer: f64,
 }
 
 impl Taut {
@@ -84,7 +85,7 @@ impl Taut {
             base += cloth.positions.len() as u32;
         }
         let tensions = vec![0.0; edges.len()];
-        Self { edges, tensions, pulling: Vec::new() }
+        Self { edges, tensions, pulling: Vec::new(), stiffer: 1.0 }
     }
 
     pub(super) fn edge_count(&self) -> usize {
@@ -92,7 +93,14 @@ impl Taut {
     }
 
     /// Finds the edges that pull at these positions, given their tensions (N) after the last iteration.
-    pub(super) fn freeze(&mut self, positions: &Coordinates, last: &[f64], system: &System) {
+    pub(super) fn freeze(
+        &mut self,
+        positions: &Coordinates,
+        last: &[f64],
+        stiffer: f64,
+        system: &System,
+    ) {
+        self.stiffer = stiffer;
         let chunks = self.tensions.par_chunks_mut(CHUNK).zip(self.edges.par_chunks(CHUNK));
         chunks.zip(last.par_chunks(CHUNK)).for_each(|((tensions, edges), last)| {
             for ((tension, edge), last) in tensions.iter_mut().zip(edges).zip(last) {
@@ -101,7 +109,7 @@ impl Taut {
                 *tension = if *last == 0.0 && squared <= edge.allowed * edge.allowed {
                     0.0
                 } else {
-                    (last + edge.kappa * (squared.sqrt() - edge.allowed)).clamp(0.0, edge.most)
+                    (last + stiffer * edge.kappa * (squared.sqrt() - edge.allowed)).clamp(0.0, stiffer * edge.most)
                 };
             }
         });
@@ -119,11 +127,21 @@ impl Taut {
                 ends: edge.ends,
                 tension,
                 normal: span.map(|d| d / length),
-                along: (edge.kappa - tension / length).max(0.0) as f32,
+                along: (stiffer * edge.kappa - tension / length).max(0.0) as f32,
                 across: (tension / length) as f32,
                 is_free,
             });
         }
+    }
+
+    /// The largest excess of an edge over its allowed length, relative, at the last freeze's positions.
+    pub(super) fn largest_excess(&self, positions: &Coordinates) -> f64 {
+        let excess = self.pulling.iter().map(|pulling| {
+            let [a, b] = pulling.ends;
+            let allowed = self.edges[pulling.edge as usize].allowed;
+            positions.distance_squared(a, b).sqrt() / allowed - 1.0
+        });
+        excess.fold(0.0, f64::max)
     }
 
     /// Adds the tensions to the forces (N).
@@ -150,21 +168,21 @@ impl Taut {
             let spans = moves.0.iter().map(|axis| f64::from(axis[a] - axis[b]));
             let along: f64 = spans.zip(pulling.normal).map(|(d, n)| d * n).sum();
             let edge = &self.edges[pulling.edge as usize];
-            let tension = pulling.tension + edge.kappa * along;
-            tensions[pulling.edge as usize] = tension.clamp(0.0, edge.most);
+            let tension = pulling.tension + self.stiffer * edge.kappa * along;
+            tensions[pulling.edge as usize] = tension.clamp(0.0, self.stiffer * edge.most);
         }
     }
 }
 
-/// The Hessian of the springs with that of the tensions.
-pub(super) struct WithTaut<'a> {
-    pub(super) springs: Product<'a>,
+/// A matrix with that of the tensions.
+pub(super) struct WithTaut<'a, Matrix> {
+    pub(super) matrix: Matrix,
     pub(super) taut: &'a Taut,
 }
 
-impl Operator for WithTaut<'_> {
+impl<Matrix: Operator> Operator for WithTaut<'_, Matrix> {
     fn apply(&self, p: &Field, out: &mut Field) {
-        self.springs.apply(p, out);
+        self.matrix.apply(p, out);
         for pulling in &self.taut.pulling {
             let [a, b] = pulling.ends.map(|end| end as usize);
             let d: [f32; 3] = std::array::from_fn(|axis| p.0[axis][a] - p.0[axis][b]);

@@ -39,10 +39,14 @@ impl Limit {
         }
     }
 
-    /// Moves ends that are too far apart after an implicit step, which has already held them as well as it can.
-    pub(crate) fn hold(&mut self, state: &mut State, inverse_masses: &[f64], h: f64) {
+    /// Moves ends that are too far apart after an implicit step, which has already held them as well as it can, and
+    /// says whether all are held now.
+    pub(crate) fn hold(&mut self, state: &mut State, inverse_masses: &[f64], h: f64) -> bool {
         match self {
-            Self::Provot(limit) => limit.apply(state, inverse_masses, h),
+            Self::Provot(limit) => {
+                limit.apply(state, inverse_masses, h);
+                true
+            }
             Self::Project(limit) => limit.hold(state, inverse_masses),
         }
     }

@@ -34,6 +34,9 @@ const SWEEPS: usize = 2;
 /// Sweeps at the end of a frame: a hanging sheet takes 3 to 20, more are of use only where pins force the strain.
 const SWEEPS_AT_END: usize = 480;
 
+/// The same after an implicit step, which can pull edges in another way.
+const SWEEPS_TO_HOLD: usize = 48;
+
 /// Sweeps before the metric changes. Where a hanging chain has to swing aside to reach, its near ends must give way
 /// too: then sweeps with the ends more even help.
 const SWEEPS_OF_A_METRIC: usize = 16;
@@ -119,17 +122,19 @@ impl Project {
             }
         }
         if is_last {
-            self.project(state, inverse_masses);
+            self.project(state, inverse_masses, SWEEPS_AT_END);
         }
         self.now.clear();
     }
 
-    /// Projects without the sweeps of explicit steps.
-    pub(crate) fn hold(&mut self, state: &mut State, inverse_masses: &[f64]) {
-        if self.find_too_long(state) {
-            self.project(state, inverse_masses);
-            self.now.clear();
+    /// Projects without the sweeps of explicit steps, and says whether all edges are held.
+    pub(crate) fn hold(&mut self, state: &mut State, inverse_masses: &[f64]) -> bool {
+        if !self.find_too_long(state) {
+            return true;
         }
+        let is_held = self.project(state, inverse_masses, SWEEPS_TO_HOLD);
+        self.now.clear();
+        is_held
     }
 
     /// Moves the ends of one edge, and their velocities, by inverse masses.
@@ -169,8 +174,8 @@ impl Project {
     }
 
     /// Moves the ends of edges that are still too long.
-    fn project(&mut self, state: &mut State, inverse_masses: &[f64]) {
-        for sweep in 0..SWEEPS_AT_END {
+    fn project(&mut self, state: &mut State, inverse_masses: &[f64], most: usize) -> bool {
+        for sweep in 0..most {
             let evenness = EVENNESS[sweep / SWEEPS_OF_A_METRIC % EVENNESS.len()];
             self.sweep_positions(state, inverse_masses, evenness);
             std::mem::swap(&mut self.now, &mut self.later);
@@ -180,6 +185,7 @@ impl Project {
         }
         self.correct_velocities(state, inverse_masses);
         self.moved.clear();
+        self.now.is_empty()
     }
 
     fn is_too_long(&self, edge: &Edge, state: &State) -> bool {

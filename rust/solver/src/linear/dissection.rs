@@ -13,7 +13,7 @@ use boucle_geometry::Vector;
 use super::laplacian::Graph;
 
 /// Particles that are eliminated as one block without being cut.
-const LEAF: usize = 28;
+const LEAF: usize = 20;
 
 /// A block of particles that are eliminated together: a separator, or a leaf.
 #[derive(Clone, Debug, PartialEq)]

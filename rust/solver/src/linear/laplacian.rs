@@ -9,6 +9,13 @@
 
 use std::ops::Range;
 
+use rayon::prelude::*;
+
+use super::field::Field;
+
+/// Rows that one task multiplies at the least.
+const CHUNK: usize = 1024;
+
 /// Which particles are joined: both directions of every pair, by particle.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Graph {
@@ -87,6 +94,18 @@ impl Laplacian {
             }
         }
         Self { diagonal, weights }
+    }
+
+    /// `out = P p`.
+    pub(crate) fn multiply(&self, graph: &Graph, p: &Field, out: &mut Field) {
+        for (out, p) in out.0.iter_mut().zip(&p.0) {
+            out.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(i, out)| {
+                let diagonal = self.diagonal[i] * f64::from(p[i]);
+                let others = self.row(graph, i as u32);
+                let others = others.map(|(j, weight)| weight * f64::from(p[j as usize]));
+                *out = (diagonal - others.sum::<f64>()) as f32;
+            });
+        }
     }
 
     /// The entries of a particle's row off the diagonal: neighbor and weight, whose opposite the matrix has.

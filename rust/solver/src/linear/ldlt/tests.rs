@@ -110,3 +110,33 @@ fn the_factor_of_a_grid_stays_small() {
     let size = Ldlt::new(&graph, &positions, &matrix).size();
     assert!(size < 1_100_000, "{size}");
 }
+#[test]
+#[ignore]
+fn timing() {
+    for side in std::env::var("SIDES").unwrap_or("64 128 256 512".into()).split(" ").map(|s| s.parse().unwrap()) {
+        let (positions, pairs) = grid(side, side);
+        let graph = Graph::new(positions.len(), &pairs);
+        let matrix = matrix(&pairs, positions.len(), &[]);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        let t = std::time::Instant::now();
+        let mut l = pool.install(|| Ldlt::new(&graph, &positions, &matrix));
+        let tn = t.elapsed();
+        let t = std::time::Instant::now();
+        pool.install(|| l.refactor(&graph, &matrix));
+        let tf = t.elapsed();
+        let r = Field(std::array::from_fn(|axis| (0..positions.len() as u64).map(|i| scattered(3 * i + axis as u64) as f32).collect()));
+        let mut z = Field::zeros(positions.len());
+        let mut best = [f64::INFINITY; 2];
+        for _ in 0..std::env::var("N").map_or(200, |n| n.parse().unwrap()) {
+            for (k, p) in [&one, &pool].into_iter().enumerate() {
+                p.install(|| {
+                let t = std::time::Instant::now();
+                for _ in 0..3 { l.apply_inverse(&r, &mut z); }
+                best[k] = best[k].min(t.elapsed().as_secs_f64() / 3.0);
+                });
+            }
+        }
+        println!("{side}: new {tn:?} factor {tf:?} size {:.2}M fronts {} runs {} solve {:.3} {:.3} ms", l.size() as f64 * 1e-6, l.symbolic.fronts.len(), l.symbolic.fronts.iter().map(|f| f.runs.len()).sum::<usize>(), best[0] * 1e3, best[1] * 1e3);
+    }
+}

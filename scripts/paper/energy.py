@@ -32,7 +32,9 @@ class Swing:
 
     times: np.ndarray  # s
     energy: np.ndarray  # part of that at the start; 0 where it would hang straight
-    angle: np.ndarray  # degrees between the vertical and the line from the edge held to the lower edge
+    angle: (
+        np.ndarray
+    )  # degrees between the vertical and the line from the edge held to the lower edge
     substeps: float  # steps a frame, mean
     worst_strain: float
 

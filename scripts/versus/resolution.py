@@ -2,7 +2,7 @@
 
 A sheet of 2 m x 2 m, held by the two ends of an edge, is let go from where it lies flat. Light air damping brings it
 to rest. Compared with the finest grid: the depth of its lowest point at rest, that of the middle of its lower edge,
-and the time of its first swing, from the start to the second time that the middle of its lower edge is farthest.
+and the time of its first swing, from the first to the third time that it passes below the pins.
 """
 
 from __future__ import annotations
@@ -60,25 +60,17 @@ def main(side: int) -> None:
 
 
 def period(along: np.ndarray) -> float:
-    """Time (s) from the start to when the middle of the lower edge has swung forth and is farthest back again.
+    """Time (s) between the first and the third time that the middle of the lower edge passes below the pins.
 
-    Between frames a parabola through the three frames around the turn finds its time.
+    Between two frames it moves straight.
     """
-    turns = [
-        i
-        for i in range(1, len(along) - 1)
-        if (along[i] - along[i - 1]) * (along[i + 1] - along[i]) < 0.0
-    ]
-    swings = [turns[0]] if turns else []
-    for turn in turns:
-        if swings and abs(along[turn] - along[swings[-1]]) > 0.1 * SIZE:
-            swings.append(turn)
-    if len(swings) < 2:
+    from_pins = along - 0.5 * SIZE
+    before = np.flatnonzero(np.sign(from_pins[:-1]) != np.sign(from_pins[1:]))
+    if len(before) < 3:
         return float("nan")
-    i = swings[1]
-    before, at, after = along[i - 1 : i + 2]
-    shift = 0.5 * (before - after) / (before - 2.0 * at + after)
-    return float((i + 1 + shift) / FPS)
+    part = from_pins[before] / (from_pins[before] - from_pins[before + 1])
+    passes = (before + part) / FPS
+    return float(passes[2] - passes[0])
 
 
 def table_of(sides: tuple[int, ...]) -> dict[str, Any]:

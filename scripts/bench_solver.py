@@ -18,8 +18,10 @@ FRAMES = 24
 SIDES = (64, 128, 256, 512)
 QUICK_SIDES = (64,)
 THREADS = (1, 2)
-ROUNDS = 2
-"""Ours is measured before and after Blender, because the load of a machine changes."""
+ROUNDS = {64: 2, 128: 2}
+"""Ours is measured before and after Blender where it is quick, because the load of a machine changes; elsewhere once."""
+SECONDS = 60.0
+"""No frame of ours begins later."""
 BLENDER_SECONDS = {64: 30.0, 128: 30.0, 256: 60.0, 512: 45.0}
 """No frame of Blender's begins later; it is stopped after twice as long and a minute."""
 BLENDER_FRAMES = {512: 4}
@@ -33,8 +35,10 @@ def bench() -> dict[str, Any]:
     quick = os.environ.get("BOUCLE_BENCH") == "quick"
     sides = QUICK_SIDES if quick else SIDES
     load = os.getloadavg()[0] if hasattr(os, "getloadavg") else None
-    rows = [row for side in sides for row in ours_and_blenders(side)]
-    print_rows(rows)
+    rows = []
+    for side in sides:
+        rows += ours_and_blenders(side)
+        print_rows(rows[-len(THREADS) - 2 :])
     same = {side: same_bits(side) for side in sides if side in SAME_BITS_FRAMES}
     others = peer_rows(sides[:1], 8.0) if quick else peer_rows(sides[:2], 25.0)
     found = targets.verdicts(rows, same)
@@ -54,17 +58,16 @@ def bench() -> dict[str, Any]:
 
 def ours_and_blenders(side: int) -> list[dict[str, Any]]:
     """Rows of one resolution: ours for each number of threads, then Blender's."""
-    print(f"-- {side}²", flush=True)
     runs: dict[int, list[dict[str, Any]]] = {threads: [] for threads in THREADS}
 
     def ours() -> None:
         for threads, results in runs.items():
-            arguments = {"side": side, "threads": threads, "frames": FRAMES}
+            arguments = {"side": side, "threads": threads, "frames": FRAMES, "seconds": SECONDS}
             results.append(cases.ask("boucle", arguments, timeout=180.0))
 
     ours()
     theirs = [blender(side, default_mass) for default_mass in (False, True)]
-    for _ in range(ROUNDS - 1):
+    for _ in range(ROUNDS.get(side, 1) - 1):
         ours()
     rows = [cases.row("Boucle", side, results, threads=n) for n, results in runs.items()]
     names = ("Blender's cloth", "Blender's cloth, default mass")
@@ -88,7 +91,7 @@ def same_bits(side: int) -> bool:
     frames = SAME_BITS_FRAMES[side]
     hashes = set()
     for threads in SAME_BITS_THREADS:
-        arguments = {"side": side, "threads": threads, "frames": frames}
+        arguments = {"side": side, "threads": threads, "frames": frames, "seconds": 2.0 * SECONDS}
         result = cases.ask("boucle", arguments, timeout=180.0)
         if "failed" in result or len(result["hash"]) != frames:
             print(
@@ -118,7 +121,7 @@ def print_rows(rows: list[dict[str, Any]]) -> None:
     """A table of rows; a case that failed says why in its first cell."""
     headings = ["", "grid", "threads", "frames", "ms/frame", "least", "most", "processor ms"]
     headings += ["set-up ms", "max strain %", "p99 %", "lowest m", "MB", "substeps", "iterations"]
-    print(table(headings, [cells(row) for row in rows]))
+    print(table(headings, [cells(row) for row in rows]), flush=True)
 
 
 def cells(row: dict[str, Any]) -> list[object]:

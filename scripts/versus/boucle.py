@@ -1,4 +1,4 @@
-"""Our simulation of the sheet: `python -m versus.boucle '{"side": 64, "threads": 1, "frames": 24}'`."""
+"""Our simulation of the sheet: `python -m versus.boucle '{"side": 64, "threads": 1, "frames": 24, ...}'`."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ def simulation(
     return boucle_core.Simulation(json.dumps(scene), [mesh], threads)
 
 
-def main(side: int, threads: int, frames: int) -> None:
-    """Measure; the certificates go along."""
+def main(side: int, threads: int, frames: int, seconds: float) -> None:
+    """Measure as many frames as begin within some seconds; the certificates go along."""
     sheet = Sheet(side)
     started = time.perf_counter()
     cloth = simulation(sheet, threads)
@@ -59,7 +59,7 @@ def main(side: int, threads: int, frames: int) -> None:
         cloth.read_positions(0, positions)
         return positions
 
-    result = follow(sheet, frames, step)
+    result = follow(sheet, frames, step, seconds=seconds)
     for key in ("max_strain", "p99_strain", "substeps", "iterations", "hash"):
         result[key] = [certificate[key] for certificate in certificates]
     tell({**result, "set_up_ms": 1e3 * set_up})

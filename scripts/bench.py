@@ -78,8 +78,13 @@ def main(words: list[str]) -> int:
     """Run the benchmarks that `words` names."""
     import bench_bridge
     import bench_explicit
+    import bench_solver
 
-    entries = {"explicit": bench_explicit.bench, "bridge": bench_bridge.bench}
+    entries = {
+        "explicit": bench_explicit.bench,
+        "bridge": bench_bridge.bench,
+        "solver": bench_solver.bench,
+    }
     names = list(entries) if words == ["all"] else words
     unknown = [name for name in names if name not in entries]
     if unknown or not names:

@@ -40,7 +40,7 @@ def demo(arguments: list[str]) -> None:
 
 
 def bench(arguments: list[str]) -> None:
-    """benchmarks by name, or all: a table and out/bench/NAME.json"""
+    """benchmarks by name, or all: a table and out/bench/NAME.json (BOUCLE_BENCH=quick for less of them)"""
     environment.set_up()
     run([venv_program(VENV, "python"), SCRIPTS / "bench.py", *arguments])
 

@@ -1,4 +1,4 @@
-"""Redo the paper's figures 2 to 8 with this code: pictures, captions and the numbers behind them.
+"""Redo the paper's figures 2 to 8 with this code, and add 9: pictures, captions and the numbers behind them.
 
 Run by the Python of .venv (`python3 scripts/dev.py build` makes it). Exit codes: 0 done, 2 wrong use.
 """
@@ -13,13 +13,13 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from paper import breakdown, deformations, elongation, hanging, spring_diagram
+from paper import breakdown, deformations, elongation, energy, hanging, spring_diagram
 from paper.looks import RESOLUTION, Plate, shrink
 from paper.view import Pictures, Plotted, Rendered
 
 ROOT = Path(__file__).resolve().parent.parent
 README_PICTURES = ROOT / "scripts" / "pictures"
-FOR_README = range(2, 9)
+FOR_README = range(2, 10)
 """Figures that the README shows: all of them."""
 
 
@@ -35,9 +35,9 @@ def parser() -> argparse.ArgumentParser:
         metavar="N",
         type=int,
         nargs="+",
-        choices=range(2, 9),
-        default=list(range(2, 9)),
-        help="numbers of the figures to make, 2 to 8",
+        choices=range(2, 10),
+        default=list(range(2, 10)),
+        help="numbers of the figures to make, 2 to 9",
     )
     lines.add_argument(
         "--readme", action="store_true", help="also renew the small copies in scripts/pictures"
@@ -55,6 +55,7 @@ def makers(pictures: Pictures, quick: bool) -> dict[int, Callable[[], Plate]]:
         6: lambda: hanging.shear_stiffness(pictures, quick),
         7: lambda: breakdown.make(pictures),
         8: elongation.make,
+        9: lambda: energy.make(quick),
     }
 
 

@@ -21,6 +21,7 @@ NAMES = {
     6: "shear",
     7: "breakdown",
     8: "spring_over_time",
+    9: "energy",
 }
 
 

@@ -1,0 +1,1 @@
+"""One hanging sheet, simulated by several programs: each measured in a process of its own."""

@@ -72,7 +72,7 @@ def ours_and_blenders(side: int) -> list[dict[str, Any]]:
     rows = [cases.row("Boucle", side, results, threads=n) for n, results in runs.items()]
     names = ("Blender's cloth", "Blender's cloth, default mass")
     return rows + [
-        cases.row(name, side, [result], threads=1)
+        cases.row(name, side, [result], threads="its own")
         for name, result in zip(names, theirs, strict=True)
     ]
 

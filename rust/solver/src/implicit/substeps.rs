@@ -17,7 +17,7 @@ const COUNTS: [u32; 10] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48];
 const FIRST: u32 = 4;
 
 /// The error allowed, as a part of tolerance times size: with the default tolerance, a sheet that falls and swings from
-/// an edge takes 6 steps a frame, which keep it within 2 % of its length (root mean square) for a second.
+/// an edge takes about 10 steps a frame, which keep it within 2 % of its length (root mean square) for a second.
 const SCALE: f64 = 0.02;
 
 /// The same for the way that a pin is off its old course after a step: seen in a few vertices only.

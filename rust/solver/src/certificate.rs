@@ -3,7 +3,7 @@
 use boucle_geometry::Vector;
 use xxhash_rust::xxh3::Xxh3;
 
-use crate::cloth::Cloth;
+use crate::cloth::Placed;
 use crate::law::spring::Law;
 use crate::material::SpringKind;
 use crate::state::State;
@@ -32,9 +32,6 @@ pub struct Certificate {
     /// XXH3-64 over all positions, f64 little-endian, cloth by cloth.
     pub hash: u64,
 }
-
-/// A cloth and the number of its first particle.
-pub(crate) type Placed<'a> = (&'a Cloth, u32);
 
 /// The certificate of a state.
 pub(crate) fn certify<'a>(

@@ -39,6 +39,18 @@ pub struct Cloth {
     pub material: SpringMaterial,
 }
 
+/// A cloth and the number of its first particle.
+pub(crate) type Placed<'a> = (&'a Cloth, u32);
+
+/// The cloths with their particles numbered one after the other.
+pub(crate) fn placed(cloths: &[Cloth]) -> impl Iterator<Item = Placed<'_>> + Clone {
+    cloths.iter().scan(0, |next, cloth| {
+        let base = *next;
+        *next += cloth.positions.len() as u32;
+        Some((cloth, base))
+    })
+}
+
 impl Cloth {
     /// A cloth with the springs and masses that its mesh gives it.
     ///

@@ -2,15 +2,14 @@
 
 use boucle_geometry::Vector;
 
-use crate::cloth::Cloth;
+use crate::cloth::{Cloth, placed};
 use crate::scatter::scattered;
 use crate::state::State;
 
 /// Moves free particles along their normals by a part of the mean edge, in no order that the eye could see: a sheet
 /// that is perfectly flat in a perfectly symmetric scene would never buckle.
 pub(crate) fn perturb(state: &mut State, cloths: &[Cloth], part: f64) {
-    let mut base = 0;
-    for cloth in cloths {
+    for (cloth, base) in placed(cloths) {
         let mut normals = vec![Vector::zeros(); cloth.positions.len()];
         for (face, corners) in cloth.mesh.faces().enumerate() {
             let area = cloth.mesh.vector_area(face, &cloth.positions);
@@ -25,10 +24,10 @@ pub(crate) fn perturb(state: &mut State, cloths: &[Cloth], part: f64) {
         let height = part * lengths / cloth.springs.len().max(1) as f64;
         for (vertex, normal) in normals.iter().enumerate() {
             let direction = normal.try_normalize(0.0).unwrap_or_else(Vector::zeros);
-            let position = state.position.get(base + vertex);
+            let particle = base as usize + vertex;
+            let position = state.position.get(particle);
             let moved = position + height * scattered(vertex as u64) * direction;
-            state.position.set(base + vertex, &moved);
+            state.position.set(particle, &moved);
         }
-        base += cloth.positions.len();
     }
 }

@@ -9,7 +9,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::certificate::{Certificate, certify, length};
 use crate::checkpoint::Checkpoint;
-use crate::cloth::{Cloth, FARTHEST};
+use crate::cloth::{Cloth, FARTHEST, placed};
 use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::force::Wind;
@@ -68,12 +68,7 @@ impl Simulation {
         cloths.iter().try_for_each(Cloth::check)?;
         winds.iter().try_for_each(|wind| wind.check(&cloths))?;
         let digest = digest(&cloths, &winds, &settings);
-        let bases = cloths.iter().scan(0, |next, cloth| {
-            let base = *next;
-            *next += cloth.positions.len() as u32;
-            Some(base)
-        });
-        let bases: Vec<u32> = bases.collect();
+        let bases: Vec<u32> = placed(&cloths).map(|(_, base)| base).collect();
         let positions: Vec<Vector> =
             cloths.iter().flat_map(|cloth| cloth.positions.iter().copied()).collect();
         let state = State::at_rest(&positions);

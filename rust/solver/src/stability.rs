@@ -17,7 +17,7 @@
 
 use nalgebra::{Complex, Matrix2};
 
-use crate::cloth::Cloth;
+use crate::cloth::{Cloth, placed};
 use crate::integrator::Integrator;
 use crate::material::{DampingLaw, Limiter};
 use crate::scatter::scattered;
@@ -153,15 +153,13 @@ type WeightedEdge = ([u32; 2], f64);
 
 fn weighted_edges(cloths: &[Cloth], weights: impl Fn(&Cloth) -> Vec<f64>) -> Vec<WeightedEdge> {
     let mut edges = Vec::new();
-    let mut base = 0;
-    for cloth in cloths {
+    for (cloth, base) in placed(cloths) {
         let pairs = cloth.springs.iter().zip(weights(cloth));
         edges.extend(
             pairs
                 .filter(|&(_, weight)| weight > 0.0)
                 .map(|(spring, weight)| (spring.ends.map(|end| end + base), weight)),
         );
-        base += cloth.positions.len() as u32;
     }
     edges
 }

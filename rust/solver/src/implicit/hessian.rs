@@ -67,10 +67,6 @@ impl Hessian {
                 arch.dispatch(Freeze { diagonal, positions, h, first, out: [x, y, z, beta] });
             });
         }
-        let laws = layout.gathers.par_iter().flat_map_iter(|gather| {
-            gather.slots.clone().map(move |_| (gather.law, &gather.particles))
-        });
-        let _ = laws;
         for gather in &layout.gathers {
             let slots = &layout.gather_slots[gather.slots.clone()];
             for (slot, out) in slots.iter().zip(&mut self.slots[gather.slots.clone()]) {

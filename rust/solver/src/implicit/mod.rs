@@ -29,7 +29,7 @@ mod preconditioner;
 mod substeps;
 mod taut;
 
-use crate::cloth::Cloth;
+use crate::cloth::{Cloth, placed};
 use crate::force::AirScratch;
 use crate::linear::{ConjugateGradient, Field, Operator, Stop};
 use crate::settings::LinearSolver;
@@ -99,13 +99,7 @@ impl Implicit {
         state: &State,
     ) -> Self {
         let count = state.len();
-        let bases = cloths.iter().scan(0, |next, cloth| {
-            let base = *next;
-            *next += cloth.positions.len() as u32;
-            Some(base)
-        });
-        let springs = cloths.iter().zip(bases);
-        let springs = springs
+        let springs = placed(cloths)
             .flat_map(|(cloth, base)| cloth.springs.iter().map(move |spring| (spring, base)));
         let taut = Taut::new(cloths, system.gravity.norm());
         Self {

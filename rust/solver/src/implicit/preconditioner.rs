@@ -2,7 +2,7 @@
 
 use boucle_geometry::Vector;
 
-use crate::cloth::Cloth;
+use crate::cloth::{Cloth, placed};
 use crate::linear::{Field, Graph, Inverse, Laplacian, Ldlt, Multigrid, Operator};
 use crate::material::SpringKind;
 use crate::settings::LinearSolver;
@@ -37,8 +37,7 @@ pub(super) struct Preconditioner {
 impl Preconditioner {
     pub(super) fn new(cloths: &[Cloth], choice: LinearSolver) -> Self {
         let (mut pairs, mut springs, mut positions) = (Vec::new(), Vec::new(), Vec::new());
-        for cloth in cloths {
-            let base = positions.len() as u32;
+        for (cloth, base) in placed(cloths) {
             positions.extend_from_slice(&cloth.positions);
             for spring in cloth.springs.iter().filter(|spring| spring.kind != SpringKind::Bend) {
                 pairs.push(spring.ends.map(|end| base + end));

@@ -14,7 +14,7 @@
 
 use rayon::prelude::*;
 
-use crate::cloth::Cloth;
+use crate::cloth::{Cloth, placed};
 use crate::linear::{Field, Operator};
 use crate::material::{Limiter, SpringKind};
 use crate::state::Coordinates;
@@ -70,8 +70,8 @@ pub(super) struct Taut {
 
 impl Taut {
     pub(super) fn new(cloths: &[Cloth], gravity: f64) -> Self {
-        let (mut edges, mut base) = (Vec::new(), 0);
-        for cloth in cloths {
+        let mut edges = Vec::new();
+        for (cloth, base) in placed(cloths) {
             let allowed = 1.0 + cloth.material.deformation_rate;
             let is_limited = cloth.material.limiter == Limiter::Project;
             let most_by_weight = MOST_WEIGHTS * gravity * cloth.masses.iter().sum::<f64>();
@@ -82,7 +82,6 @@ impl Taut {
                 kappa: KAPPA * spring.stiffness,
                 most: MOST_STRAIN * KAPPA * spring.stiffness * spring.rest_length + most_by_weight,
             }));
-            base += cloth.positions.len() as u32;
         }
         let tensions = vec![0.0; edges.len()];
         Self { edges, tensions, pulling: Vec::new(), stiffer: 1.0 }

@@ -15,6 +15,8 @@
 use rayon::prelude::*;
 
 use crate::cloth::{Cloth, placed};
+use crate::kernel::{Layout, Place};
+use crate::law::Spring;
 use crate::linear::{Field, Operator};
 use crate::material::{Limiter, SpringKind};
 use crate::state::Coordinates;
@@ -41,12 +43,15 @@ struct Edge {
     kappa: f64,
     /// Largest tension (N).
     most: f64,
+    /// Of its spring.
+    place: Place,
 }
 
 /// An edge that pulls, frozen at one state.
 #[derive(Clone, Copy, Debug)]
-struct Pulling {
+pub(super) struct Pulling {
     edge: u32,
+    pub(super) place: Place,
     ends: [u32; 2],
     /// (N)
     tension: f64,
@@ -55,6 +60,16 @@ struct Pulling {
     along: f32,
     across: f32,
     is_free: [bool; 2],
+}
+
+impl Pulling {
+    /// Adds its tangents to those of its spring: `sqrt(alpha) n` and beta.
+    pub(super) fn add_to(&self, [x, y, z, beta]: [&mut f32; 4]) {
+        let alpha = *x * *x + *y * *y + *z * *z + self.along;
+        let root = alpha.sqrt();
+        [*x, *y, *z] = self.normal.map(|n| root * n as f32);
+        *beta += self.across;
+    }
 }
 
 /// The edges that may become taut.
@@ -69,22 +84,37 @@ pub(super) struct Taut {
 }
 
 impl Taut {
-    pub(super) fn new(cloths: &[Cloth], gravity: f64) -> Self {
+    pub(super) fn new(cloths: &[Cloth], layout: &Layout, gravity: f64) -> Self {
         let mut edges = Vec::new();
+        let count = cloths.iter().map(|cloth| cloth.positions.len()).sum();
         for (cloth, base) in placed(cloths) {
             let allowed = 1.0 + cloth.material.deformation_rate;
-            let is_limited = cloth.material.limiter == Limiter::Project;
             let most_by_weight = MOST_WEIGHTS * gravity * cloth.masses.iter().sum::<f64>();
-            let stretch = cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Stretch);
-            edges.extend(stretch.filter(|_| is_limited).map(|spring| Edge {
-                ends: spring.ends.map(|end| base + end),
-                allowed: allowed * spring.rest_length,
-                kappa: KAPPA * spring.stiffness,
-                most: MOST_STRAIN * KAPPA * spring.stiffness * spring.rest_length + most_by_weight,
+            if cloth.material.limiter != Limiter::Project {
+                continue;
+            }
+            let is_stretch = |spring: &&Spring| spring.kind == SpringKind::Stretch;
+            let stretch: Vec<_> = cloth.springs.iter().filter(is_stretch).collect();
+            let ends = |spring: &&Spring| spring.ends.map(|end| base + end);
+            let places = layout.places(stretch.iter().map(ends), count);
+            edges.extend(stretch.iter().zip(places).filter_map(|(spring, place)| {
+                let kappa = KAPPA * spring.stiffness;
+                Some(Edge {
+                    ends: ends(spring),
+                    allowed: allowed * spring.rest_length,
+                    kappa,
+                    most: MOST_STRAIN * kappa * spring.rest_length + most_by_weight,
+                    place: place?,
+                })
             }));
         }
         let tensions = vec![0.0; edges.len()];
         Self { edges, tensions, pulling: Vec::new(), stiffer: 1.0 }
+    }
+
+    /// The edges that pull, as the last freeze found them.
+    pub(super) fn pulling(&self) -> &[Pulling] {
+        &self.pulling
     }
 
     pub(super) fn edge_count(&self) -> usize {
@@ -124,6 +154,7 @@ impl Taut {
             let length = positions.distance_squared(edge.ends[0], edge.ends[1]).sqrt();
             self.pulling.push(Pulling {
                 edge: number as u32,
+                place: edge.place,
                 ends: edge.ends,
                 tension,
                 normal: span.map(|d| d / length),

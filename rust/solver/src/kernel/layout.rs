@@ -48,10 +48,21 @@ pub(crate) struct Gather {
 /// One spring of each gathered particle; one that has no more is joined to itself by no spring.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GatherSlot {
+    /// The gather that it belongs to.
+    pub(crate) gather: u32,
     pub(crate) neighbors: [u32; GATHERED],
     pub(crate) stiffness: [f64; GATHERED],
     pub(crate) damping: [f64; GATHERED],
     pub(crate) rest_lengths: [f64; GATHERED],
+}
+
+/// Where a layout has a spring.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Place {
+    /// A diagonal, and the number of the spring on it.
+    Diagonal(u32, u32),
+    /// For each end, slot and lane.
+    Gathered([(u32, u32); 2]),
 }
 
 /// All the springs of a simulation as the kernel reads them.
@@ -95,6 +106,42 @@ impl Layout {
         layout
     }
 
+    /// Where springs between these pairs of particles are; none for pairs that no spring joins.
+    pub(crate) fn places(
+        &self,
+        pairs: impl IntoIterator<Item = [u32; 2]>,
+        particle_count: usize,
+    ) -> Vec<Option<Place>> {
+        let mut gathered = vec![None; particle_count];
+        for gather in &self.gathers {
+            for (lane, &particle) in gather.particles[..gather.count].iter().enumerate() {
+                gathered[particle as usize] = Some((gather, lane));
+            }
+        }
+        let end = |own: u32, other: u32| {
+            let (gather, lane) = gathered[own as usize]?;
+            let slot = gather.slots.clone().find(|&slot| {
+                let slot = &self.gather_slots[slot];
+                slot.neighbors[lane] == other && slot.rest_lengths[lane] > 0.0
+            });
+            Some((slot? as u32, lane as u32))
+        };
+        let place = |[a, b]: [u32; 2]| {
+            let [first, offset] = [a.min(b), a.abs_diff(b)].map(|number| number as usize);
+            let diagonal = self.diagonals.iter().position(|diagonal| {
+                let springs = first.checked_sub(diagonal.first);
+                let rest_length = springs.and_then(|spring| diagonal.rest_lengths.get(spring));
+                diagonal.offset == offset && rest_length.is_some_and(|length| *length > 0.0)
+            });
+            if let Some(diagonal) = diagonal {
+                let spring = first - self.diagonals[diagonal].first;
+                return Some(Place::Diagonal(diagonal as u32, spring as u32));
+            }
+            Some(Place::Gathered([end(a, b)?, end(b, a)?]))
+        };
+        pairs.into_iter().map(place).collect()
+    }
+
     fn add_gathers(&mut self, chunk: Range<usize>, halves: &[Vec<Half>], laws: &[Law]) {
         let first = self.gathers.len();
         let mut particles: Vec<usize> = chunk.filter(|&i| !halves[i].is_empty()).collect();
@@ -114,6 +161,7 @@ impl Layout {
         let degree = particles.iter().map(|&particle| halves[particle].len()).max().unwrap_or(0);
         for slot in 0..degree {
             let mut lanes = GatherSlot {
+                gather: self.gathers.len() as u32,
                 neighbors: std::array::from_fn(|lane| of_lane(lane) as u32),
                 stiffness: [0.0; GATHERED],
                 damping: [0.0; GATHERED],

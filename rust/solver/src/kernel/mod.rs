@@ -17,7 +17,7 @@ mod sums;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use layout::{Diagonal, GATHERED, GatherSlot, Layout};
+pub(crate) use layout::{Diagonal, GATHERED, GatherSlot, Layout, Place};
 pub(crate) use sums::Sums;
 
 use std::ops::Range;

@@ -1,15 +1,16 @@
 //! Conjugate gradients in f32, preconditioned.
 //!
-//! Solves `H x = r` for a positive definite H from x = 0, with the inverse of P as preconditioner. It stops when
-//! `rᵀ P⁻¹ r` has fallen to the square of a tolerance times what it was, after at least some iterations.
+//! Solves `H x = r` for a positive definite H from x = 0, with something near H⁻¹ as preconditioner. An iteration brings
+//! x nearer by `alpha rᵀ z`, in the square of the norm of H. They stop when one gains no more than the square of a
+//! tolerance times what all have gained: that needs no product beside those of the iteration.
 //!
 //! Sums run over fixed chunks in the order of the particles, whatever the number of threads.
 //!
-//! Source: Hestenes & Stiefel 1952.
+//! Source: Hestenes & Stiefel 1952, theorem 6:1; Strakos & Tichy 2002 for the stop.
 
 use rayon::prelude::*;
 
-use super::field::Field;
+use super::field::{CHUNK, Field};
 use crate::state::Coordinates;
 
 /// A product with a symmetric positive definite matrix.
@@ -24,17 +25,22 @@ pub(crate) trait Inverse: Send {
     fn apply_inverse(&mut self, r: &Field, z: &mut Field);
 }
 
+/// How a solve went.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Solved {
+    pub(crate) iterations: u32,
+    /// Square of the norm, in that of H, by which the solution has come nearer.
+    pub(crate) gained: f64,
+}
+
 /// When to stop.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stop {
-    /// Of the norm of the residual, relative to the largest since [`ConjugateGradient::start`].
+    /// Of an iteration's gain, relative to all since [`ConjugateGradient::start`]: both as norms.
     pub(crate) tolerance: f64,
     pub(crate) least_iterations: u32,
     pub(crate) most_iterations: u32,
 }
-
-/// Numbers of a chunk.
-const CHUNK: usize = 4096;
 
 /// Vectors of one solve.
 #[derive(Debug)]
@@ -46,8 +52,8 @@ pub(crate) struct ConjugateGradient {
     direction: Field,
     product: Field,
     partial: Vec<f64>,
-    /// Squared norm of the residual that tolerances are relative to.
-    reference: f64,
+    /// What all iterations have gained.
+    gained: f64,
 }
 
 impl ConjugateGradient {
@@ -59,13 +65,13 @@ impl ConjugateGradient {
             direction: Field::zeros(count),
             product: Field::zeros(count),
             partial: vec![0.0; count.div_ceil(CHUNK)],
-            reference: 0.0,
+            gained: 0.0,
         }
     }
 
-    /// Makes tolerances relative to the residuals that come.
+    /// Makes tolerances relative to what comes.
     pub(crate) fn start(&mut self) {
-        self.reference = 0.0;
+        self.gained = 0.0;
     }
 
     /// Takes a right-hand side.
@@ -77,62 +83,64 @@ impl ConjugateGradient {
         }
     }
 
-    /// Solves for the solution, given the residual; returns the iterations it took.
+    /// Solves for the solution, given the residual.
     pub(crate) fn solve(
         &mut self,
         operator: &impl Operator,
         inverse: &mut dyn Inverse,
         stop: Stop,
-    ) -> u32 {
-        let Self { residual, solution, preconditioned, direction, product, partial, reference } =
-            self;
+    ) -> Solved {
+        let Self { residual, solution, preconditioned, direction, product, partial, gained } = self;
         for axis in &mut solution.0 {
             axis.fill(0.0);
         }
-        inverse.apply_inverse(residual, preconditioned);
-        for (direction, preconditioned) in direction.0.iter_mut().zip(&preconditioned.0) {
-            direction.copy_from_slice(preconditioned);
-        }
-        let mut rz = dot(residual, preconditioned, partial);
-        *reference = reference.max(rz);
+        let before = *gained;
+        let mut last = f64::INFINITY;
         for iteration in 0..stop.most_iterations {
-            let is_done = rz <= stop.tolerance * stop.tolerance * *reference;
+            inverse.apply_inverse(residual, preconditioned);
+            let rz = dot(residual, preconditioned, partial);
             if rz.is_nan() {
                 // What is lost must be seen to be lost.
                 for axis in &mut solution.0 {
                     axis.fill(f32::NAN);
                 }
-                return iteration.max(1);
+                return Solved { iterations: iteration + 1, gained: f64::NAN };
             }
-            if rz <= 0.0 || (is_done && iteration >= stop.least_iterations) {
-                return iteration;
+            if rz <= 0.0 {
+                return Solved { iterations: iteration, gained: *gained - before };
             }
+            if iteration == 0 {
+                direction.copy_from(preconditioned);
+            } else {
+                scale_and_add(direction, (rz / last) as f32, preconditioned);
+            }
+            last = rz;
             operator.apply(direction, product);
             let curvature = dot(direction, product, partial);
             if !(curvature > 0.0) {
-                return iteration;
+                return Solved { iterations: iteration, gained: *gained - before };
             }
-            let step = (rz / curvature) as f32;
-            add_scaled(solution, step, direction);
-            add_scaled(residual, -step, product);
-            inverse.apply_inverse(residual, preconditioned);
-            let next = dot(residual, preconditioned, partial);
-            let keep = (next / rz) as f32;
-            rz = next;
-            scale_and_add(direction, keep, preconditioned);
+            let step = rz / curvature;
+            add_scaled(solution, step as f32, direction);
+            add_scaled(residual, -step as f32, product);
+            let gain = step * rz;
+            *gained += gain;
+            let is_done = gain <= stop.tolerance * stop.tolerance * *gained;
+            if is_done && iteration + 1 >= stop.least_iterations {
+                return Solved { iterations: iteration + 1, gained: *gained - before };
+            }
         }
-        stop.most_iterations
+        Solved { iterations: stop.most_iterations, gained: *gained - before }
     }
 }
 
 /// `aᵀ b`.
 fn dot(a: &Field, b: &Field, partial: &mut [f64]) -> f64 {
-    let [ax, ay, az] = a.0.each_ref().map(|axis| axis.par_chunks(CHUNK));
-    let [bx, by, bz] = b.0.each_ref().map(|axis| axis.par_chunks(CHUNK));
-    let chunks = (ax, ay, az, bx, by, bz).into_par_iter().zip(&mut *partial);
-    chunks.for_each(|((ax, ay, az, bx, by, bz), sum)| {
-        *sum = (dot_of(ax, bx) + dot_of(ay, by)) + dot_of(az, bz);
-    });
+    a.chunks().zip(b.chunks()).zip(&mut *partial).for_each(
+        |(([ax, ay, az], [bx, by, bz]), sum)| {
+            *sum = (dot_of(ax, bx) + dot_of(ay, by)) + dot_of(az, bz);
+        },
+    );
     partial.iter().sum()
 }
 
@@ -162,10 +170,8 @@ fn scale_and_add(to: &mut Field, factor: f32, from: &Field) {
 }
 
 fn each_chunk(to: &mut Field, from: &Field, update: impl Fn(&mut f32, f32) + Sync) {
-    let [x, y, z] = to.0.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));
-    let [fx, fy, fz] = from.0.each_ref().map(|axis| axis.par_chunks(CHUNK));
-    (x, y, z, fx, fy, fz).into_par_iter().for_each(|(x, y, z, fx, fy, fz)| {
-        for (to, from) in [(x, fx), (y, fy), (z, fz)] {
+    to.chunks_mut().zip(from.chunks()).for_each(|(to, from)| {
+        for (to, from) in to.into_iter().zip(from) {
             for (to, &from) in to.iter_mut().zip(from) {
                 update(to, from);
             }

@@ -1,5 +1,10 @@
 //! A small vector for each particle, as the linear solver reads it.
 
+use rayon::prelude::*;
+
+/// Particles that one task handles.
+pub(crate) const CHUNK: usize = 2048;
+
 /// Single precision, an array an axis.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Field(pub(crate) [Vec<f32>; 3]);
@@ -13,5 +18,28 @@ impl Field {
         for (axis, source) in self.0.iter_mut().zip(&other.0) {
             axis.copy_from_slice(source);
         }
+    }
+
+    /// The three axes of each chunk of particles.
+    pub(crate) fn chunks(&self) -> impl IndexedParallelIterator<Item = [&[f32]; 3]> {
+        let [x, y, z] = self.0.each_ref().map(|axis| axis.par_chunks(CHUNK));
+        (x, y, z).into_par_iter().map(|(x, y, z)| [x, y, z])
+    }
+
+    /// The same, to change them.
+    pub(crate) fn chunks_mut(&mut self) -> impl IndexedParallelIterator<Item = [&mut [f32]; 3]> {
+        let [x, y, z] = self.0.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));
+        (x, y, z).into_par_iter().map(|(x, y, z)| [x, y, z])
+    }
+
+    /// Adds another.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.chunks_mut().zip(other.chunks()).for_each(|(own, other)| {
+            for (own, other) in own.into_iter().zip(other) {
+                for (own, other) in own.iter_mut().zip(other) {
+                    *own += other;
+                }
+            }
+        });
     }
 }

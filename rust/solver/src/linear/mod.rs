@@ -1,5 +1,7 @@
 //! Linear algebra of the implicit step: the constant matrix, its inverse, and conjugate gradients.
 
+mod block_jacobi;
+pub(crate) mod chebyshev;
 mod conjugate_gradient;
 mod dissection;
 mod field;
@@ -9,7 +11,8 @@ mod multigrid;
 #[cfg(test)]
 mod problems;
 
-pub(crate) use conjugate_gradient::{ConjugateGradient, Inverse, Operator, Stop};
+pub(crate) use block_jacobi::{BlockJacobi, Entries, LARGEST};
+pub(crate) use conjugate_gradient::{ConjugateGradient, Inverse, Operator, Solved, Stop};
 pub(crate) use field::Field;
 pub(crate) use laplacian::{Graph, Laplacian};
 pub(crate) use ldlt::Ldlt;

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use super::super::chebyshev;
 use super::super::field::Field;
 use super::super::laplacian::{Graph, Laplacian};
 use super::coarsening::NONE;
@@ -80,20 +81,8 @@ impl Level {
 
     /// Chebyshev iteration from the present solution. `diag⁻¹ P` has no eigenvalue above 2.
     pub(super) fn smooth(&mut self) {
-        let (high, low) = (2.0, 2.0 * SMOOTHED);
-        let (middle, half) = (0.5 * (high + low), 0.5 * (high - low));
-        let ratio = middle / half;
-        let mut last = 1.0 / ratio;
-        for step in 0..DEGREE {
+        for [keep, take] in chebyshev::steps(2.0 * SMOOTHED, 2.0).take(DEGREE) {
             self.take_left();
-            let (keep, take) = if step == 0 {
-                (0.0, 1.0 / middle)
-            } else {
-                let next = 1.0 / (2.0 * ratio - last);
-                let factors = (next * last, 2.0 * next / half);
-                last = next;
-                factors
-            };
             let Self { diagonal, solution, direction, left, .. } = self;
             for ((x, direction), left) in solution.0.iter_mut().zip(&mut direction.0).zip(&left.0) {
                 let chunks = x.par_chunks_mut(CHUNK).zip(direction.par_chunks_mut(CHUNK));

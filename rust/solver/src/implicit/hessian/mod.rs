@@ -1,0 +1,125 @@
+//! The Hessian of an implicit step, frozen at one state and never written down as a matrix.
+//!
+//! A spring of present length l, rest length L, direction n and force T(l) adds, for `d = d_i - d_j`,
+//!
+//! ```text
+//! alpha n (n·d) + beta d        beta = max(0, T/l) + kd/h'  (relative damping)
+//!                               alpha = max(0, T' - T/l) + kd/h'  (axial damping)
+//! ```
+//!
+//! to row i and its opposite to row j. Hooke's law has T' = k and T/l = k (1 - L/l): what a compressed spring would
+//! make negative is left out, so that H is positive definite. Beyond the allowed length equation 6 has
+//! T/l = k (l/L - 1) and T' = k (2 l/L - 1).
+//!
+//! An edge at its limit adds its own alpha and beta to those of its spring ([`super::taut`]).
+//!
+//! Springs lie as [`crate::kernel`] lays them out: diagonals of equal offset, whose ends load as vectors, and the
+//! rest gathered.
+//!
+//! Source: Choi & Ko 2002 for the clamp.
+
+mod blocks;
+mod diagonal;
+mod product;
+mod tangent;
+
+use std::ops::Range;
+
+use pulp::Arch;
+use rayon::prelude::*;
+
+use super::taut::Pulling;
+use crate::kernel::{CHUNK, GATHERED, Layout, Place};
+use crate::state::Coordinates;
+pub(super) use product::Product;
+use tangent::{Freeze, freeze_slot};
+
+/// `sqrt(alpha) n` and beta of springs side by side.
+#[derive(Clone, Debug, Default)]
+struct Tangents([Vec<f32>; 4]);
+
+impl Tangents {
+    #[inline(always)]
+    fn of(&self, springs: Range<usize>) -> [&[f32]; 4] {
+        self.0.each_ref().map(|axis| &axis[springs.clone()])
+    }
+}
+
+/// The same of one slot of gathered springs.
+type SlotTangents = [[f32; GATHERED]; 4];
+
+/// Slots that one task freezes, at the least.
+const SLOTS: usize = 256;
+
+/// The matrix at one state.
+#[derive(Debug)]
+pub(super) struct Hessian {
+    /// For each diagonal of the layout.
+    diagonals: Vec<Tangents>,
+    /// For each gathered slot of the layout.
+    slots: Vec<SlotTangents>,
+    /// `m/h'² + ka/h'` (kg/s²); 0 where pinned.
+    pub(super) inertia: Vec<f32>,
+    arch: Arch,
+}
+
+impl Hessian {
+    pub(super) fn new(layout: &Layout, particle_count: usize) -> Self {
+        let diagonals = layout.diagonals.iter().map(|diagonal| {
+            let count = diagonal.rest_lengths.len();
+            Tangents(std::array::from_fn(|_| vec![0.0; count]))
+        });
+        Self {
+            diagonals: diagonals.collect(),
+            slots: vec![SlotTangents::default(); layout.gather_slots.len()],
+            inertia: vec![0.0; particle_count],
+            arch: Arch::new(),
+        }
+    }
+
+    /// Takes the springs' tangents at these positions, for a step h' (s).
+    pub(super) fn freeze(&mut self, layout: &Layout, positions: &Coordinates, h: f64) {
+        let arch = self.arch;
+        layout.diagonals.par_iter().zip(&mut self.diagonals).for_each(|(diagonal, tangents)| {
+            let [x, y, z, beta] = tangents.0.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));
+            (x, y, z, beta).into_par_iter().enumerate().for_each(|(chunk, (x, y, z, beta))| {
+                let first = chunk * CHUNK;
+                arch.dispatch(Freeze { diagonal, positions, h, first, out: [x, y, z, beta] });
+            });
+        });
+        let slots = layout.gather_slots.par_iter().zip(&mut self.slots);
+        slots.with_min_len(SLOTS).for_each(|(slot, out)| {
+            let gather = &layout.gathers[slot.gather as usize];
+            freeze_slot(slot, &gather.particles, gather.law, positions, h, out);
+        });
+    }
+
+    /// Adds what edges at their limit add to the tangents of their springs.
+    pub(super) fn tauten(&mut self, pulling: &[Pulling]) {
+        for pulling in pulling {
+            match pulling.place {
+                Place::Diagonal(diagonal, spring) => {
+                    let [x, y, z, beta] = &mut self.diagonals[diagonal as usize].0;
+                    let spring = spring as usize;
+                    pulling.add_to([
+                        &mut x[spring],
+                        &mut y[spring],
+                        &mut z[spring],
+                        &mut beta[spring],
+                    ]);
+                }
+                Place::Gathered(ends) => {
+                    for (slot, lane) in ends {
+                        let tangents = self.slots[slot as usize].each_mut();
+                        pulling.add_to(tangents.map(|lanes| &mut lanes[lane as usize]));
+                    }
+                }
+            }
+        }
+    }
+
+    /// The product with H on the springs of a layout.
+    pub(super) fn on<'a>(&'a self, layout: &'a Layout) -> Product<'a> {
+        Product { hessian: self, layout }
+    }
+}

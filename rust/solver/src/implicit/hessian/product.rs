@@ -1,0 +1,96 @@
+//! Products with the Hessian, chunk by chunk of particles.
+
+use pulp::{Simd, WithSimd};
+use rayon::prelude::*;
+
+use super::Hessian;
+use super::diagonal::Springs;
+use crate::kernel::{CHUNK, GATHERED, Layout};
+use crate::linear::{Field, Operator};
+
+/// The matrix with the layout that says where its springs are.
+pub(in crate::implicit) struct Product<'a> {
+    pub(super) hessian: &'a Hessian,
+    pub(super) layout: &'a Layout,
+}
+
+impl Product<'_> {
+    /// `from -= H p`.
+    pub(in crate::implicit) fn subtract(&self, p: &Field, from: &mut Field) {
+        self.each_chunk::<true>(p, from);
+    }
+
+    fn each_chunk<const SUBTRACT: bool>(&self, p: &Field, out: &mut Field) {
+        let arch = self.hessian.arch;
+        out.chunks_mut().enumerate().for_each(|(chunk, out)| {
+            arch.dispatch(Rows::<SUBTRACT> { product: self, p, first: chunk * CHUNK, out });
+        });
+    }
+}
+
+impl Operator for Product<'_> {
+    fn apply(&self, p: &Field, out: &mut Field) {
+        self.each_chunk::<false>(p, out);
+    }
+}
+
+/// The rows of one chunk of particles.
+struct Rows<'a, const SUBTRACT: bool> {
+    product: &'a Product<'a>,
+    p: &'a Field,
+    first: usize,
+    out: [&'a mut [f32]; 3],
+}
+
+impl<const SUBTRACT: bool> WithSimd for Rows<'_, SUBTRACT> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { product: Product { hessian, layout }, p, first, mut out } = self;
+        if !SUBTRACT {
+            for axis in &mut out {
+                axis.fill(0.0);
+            }
+        }
+        let own = first..first + out[0].len();
+        for (diagonal, tangents) in layout.diagonals.iter().zip(&hessian.diagonals) {
+            let springs = Springs { diagonal, tangents, p };
+            springs.add::<S, SUBTRACT>(simd, &own, out.each_mut().map(|axis| &mut **axis));
+        }
+        for gather in &layout.gathers[layout.gathers_of_chunk[first / CHUNK].clone()] {
+            let slots = gather.slots.clone();
+            let springs = layout.gather_slots[slots.clone()].iter().zip(&hessian.slots[slots]);
+            let own = pick(p, &gather.particles);
+            let mut sums = [[0.0_f32; GATHERED]; 3];
+            for (slot, [nx, ny, nz, beta]) in springs {
+                let [ox, oy, oz] = pick(p, &slot.neighbors);
+                for i in 0..GATHERED {
+                    let (dx, dy, dz) = (own[0][i] - ox[i], own[1][i] - oy[i], own[2][i] - oz[i]);
+                    let along = nx[i] * dx + ny[i] * dy + nz[i] * dz;
+                    sums[0][i] += along * nx[i] + beta[i] * dx;
+                    sums[1][i] += along * ny[i] + beta[i] * dy;
+                    sums[2][i] += along * nz[i] + beta[i] * dz;
+                }
+            }
+            for i in 0..gather.count {
+                for axis in 0..3 {
+                    let sum = if SUBTRACT { -sums[axis][i] } else { sums[axis][i] };
+                    out[axis][gather.particles[i] as usize - first] += sum;
+                }
+            }
+        }
+        let inertia = &hessian.inertia[own.clone()];
+        for (out, p) in out.into_iter().zip(&p.0) {
+            for ((out, p), inertia) in out.iter_mut().zip(&p[own.clone()]).zip(inertia) {
+                let own = if SUBTRACT { -(inertia * p) } else { inertia * p };
+                *out = if *inertia > 0.0 { *out + own } else { 0.0 };
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn pick(field: &Field, particles: &[u32; GATHERED]) -> [[f32; GATHERED]; 3] {
+    field.0.each_ref().map(|axis| particles.map(|particle| axis[particle as usize]))
+}

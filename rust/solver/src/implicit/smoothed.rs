@@ -1,0 +1,67 @@
+//! The preconditioner of a step: P⁻¹ between two smoothings with the blocks on H's diagonal.
+//!
+//! P takes every spring as stiff in all directions. Cloth is soft across: there P is far above H, and P⁻¹ alone leaves
+//! folding and swinging to many iterations. The 3 x 3 blocks of H know the soft direction of each particle. So first
+//! Chebyshev steps with them, then P⁻¹ on what is left, then the same steps once more:
+//!
+//! ```text
+//! z = C r        z += P⁻¹ (r - H z)        z += C (r - H z)
+//! ```
+//!
+//! That is symmetric and positive definite for any P: the sum of what the steps of C do together, and of P⁻¹ between a
+//! matrix and its transpose.
+//!
+//! Hanging sheets take a quarter of the iterations that P⁻¹ alone takes, and have a smaller error when they stop. With one
+//! step in the place of two they take a third more.
+
+use crate::linear::{BlockJacobi, Field, Inverse, LARGEST, chebyshev};
+
+use super::hessian::Product;
+
+/// Chebyshev steps before and after.
+const STEPS: usize = 2;
+
+/// They work on eigenvalues from this part of the largest up.
+const SMOOTHED: f32 = 0.125;
+
+/// Vectors of one application.
+#[derive(Debug)]
+pub(super) struct Scratch {
+    left: Field,
+    step: Field,
+}
+
+impl Scratch {
+    pub(super) fn new(count: usize) -> Self {
+        Self { left: Field::zeros(count), step: Field::zeros(count) }
+    }
+}
+
+/// The preconditioner, of what it is made.
+pub(super) struct Smoothed<'a> {
+    pub(super) matrix: &'a Product<'a>,
+    pub(super) blocks: &'a BlockJacobi,
+    pub(super) inverse: &'a mut dyn Inverse,
+    pub(super) scratch: &'a mut Scratch,
+}
+
+impl Inverse for Smoothed<'_> {
+    fn apply_inverse(&mut self, r: &Field, z: &mut Field) {
+        let Self { matrix, blocks, inverse, scratch: Scratch { left, step } } = self;
+        left.copy_from(r);
+        for axis in &mut z.0 {
+            axis.fill(0.0);
+        }
+        let smooth = || chebyshev::steps(SMOOTHED * LARGEST, LARGEST).take(STEPS);
+        for factors in smooth() {
+            blocks.relax(factors, left, step, z);
+            matrix.subtract(step, left);
+        }
+        inverse.apply_inverse(left, step);
+        z.add(step);
+        for factors in smooth() {
+            matrix.subtract(step, left);
+            blocks.relax(factors, left, step, z);
+        }
+    }
+}

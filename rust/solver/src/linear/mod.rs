@@ -7,6 +7,8 @@ mod laplacian;
 mod ldlt;
 mod multigrid;
 #[cfg(test)]
+mod oracle;
+#[cfg(test)]
 mod problems;
 
 pub(crate) use conjugate_gradient::{ConjugateGradient, Inverse, Operator, Stop};

@@ -190,12 +190,12 @@ fn a_solve_agrees_with_conjugate_gradients_behind_a_multigrid_cycle() {
         let mut solution = [0, 1, 2].map(|_| vec![0.0; count]);
         for _ in 0..ROUNDS {
             let mut left = State::zeros(count);
-            for axis in 0..3 {
-                for i in 0..count {
+            for ((left, r), solution) in left.position.0.iter_mut().zip(&r.0).zip(&solution) {
+                for (i, (left, r)) in left.iter_mut().zip(r).enumerate() {
                     let others = matrix.row(&graph, i as u32);
-                    let others = others.map(|(j, weight)| weight * solution[axis][j as usize]);
-                    let product = matrix.diagonal[i] * solution[axis][i] - others.sum::<f64>();
-                    left.position.0[axis][i] = f64::from(r.0[axis][i]) - product;
+                    let others = others.map(|(j, weight)| weight * solution[j as usize]);
+                    let product = matrix.diagonal[i] * solution[i] - others.sum::<f64>();
+                    *left = f64::from(*r) - product;
                 }
             }
             gradients.start();

@@ -15,7 +15,7 @@
 //!
 //! from the inertial prediction `x = target + h'² g`, by conjugate gradients. Their preconditioner is the inverse of
 //! `P = M/h'² + D/h' + sum k_e L_e`, the matrix of Projective Dynamics, between two smoothings ([`smoothed`]). P is
-//! constant while step, stiffness and pins are, and one number for each pair of particles.
+//! constant while step, stiffness and pins are, and one number for each pair of particles; bend springs are left out.
 //!
 //! Iterations end when one brings the guess nearer by a small part only of what all have, in the norm of H. Mostly two
 //! of Newton are made; BDF2 needs the second where cloth snaps taut.
@@ -26,13 +26,16 @@ mod hessian;
 mod history;
 mod momentum;
 mod preconditioner;
+mod pull;
 mod smoothed;
 mod substeps;
 mod taut;
+#[cfg(test)]
+mod tests;
 
 use crate::cloth::{Cloth, placed};
 use crate::force::AirScratch;
-use crate::linear::{BlockJacobi, ConjugateGradient, Field, Operator, Solved, Stop};
+use crate::linear::{BlockJacobi, ConjugateGradient, Solved, Stop};
 use crate::settings::LinearSolver;
 use crate::state::State;
 use crate::system::{Motion, Rate, System};
@@ -43,7 +46,7 @@ use momentum::Pieces;
 use preconditioner::Preconditioner;
 use smoothed::{Scratch, Smoothed};
 pub(crate) use substeps::Accuracy;
-use taut::{Taut, WithTaut};
+use taut::Taut;
 
 /// Which formula makes the base of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,11 +65,6 @@ const STOP: Stop = Stop { tolerance: 0.15, least_iterations: 1, most_iterations:
 
 /// No more Newton iterations once one gains no more than the square of this part of all.
 const LEFT: f64 = 0.2;
-
-/// Edges that are pulled are so much stiffer than in the time step, in at most so many rounds.
-const STIFFER: f64 = 30.0;
-const ROUNDS: usize = 6;
-const PULL: Stop = Stop { tolerance: 0.05, least_iterations: 3, most_iterations: 60 };
 
 /// An implicit integrator and all that it keeps between steps.
 #[derive(Debug)]
@@ -154,59 +152,6 @@ impl Implicit {
         self.memory.before.copy_from(state);
         self.memory.step = h;
         state.copy_from(&self.at);
-    }
-
-    /// Pulls edges that are still too long to their allowed length, in the metric of P: what the limiter cannot do
-    /// edge by edge, where a row of edges is stretched between two pins. Velocities stay.
-    ///
-    /// Augmented Lagrangian steps with edges [`STIFFER`] than in the time step, until the excess is a tenth.
-    pub(crate) fn pull(&mut self, system: &System, state: &mut State) {
-        let Self { taut, gradients, preconditioner, at, residual, base, .. } = self;
-        let mut tensions = vec![0.0; taut.edge_count()];
-        let mut moved = Field::zeros(state.len());
-        let mut product = Field::zeros(state.len());
-        at.position.copy_from(&state.position);
-        base.position.copy_from(&state.position);
-        let (inverse, matrix) = preconditioner.both();
-        let mut first = 0.0;
-        for _ in 0..ROUNDS {
-            taut.freeze(&at.position, &tensions, STIFFER, system);
-            let excess = taut.largest_excess(&at.position);
-            first = f64::max(first, excess);
-            if excess <= 0.1 * first {
-                break;
-            }
-            matrix.apply(&moved, &mut product);
-            for (out, product) in residual.position.0.iter_mut().zip(&product.0) {
-                for (i, (out, product)) in out.iter_mut().zip(product).enumerate() {
-                    *out = if system.is_pinned(i) { 0.0 } else { -f64::from(*product) };
-                }
-            }
-            taut.add_forces(&mut residual.position);
-            gradients.start();
-            gradients.take_residual(&residual.position);
-            let operator = WithTaut { matrix, taut };
-            self.iterations += gradients.solve(&operator, inverse, PULL).iterations;
-            taut.follow(&gradients.solution, &mut tensions);
-            for (axis, moved) in moved.0.iter_mut().enumerate() {
-                let moves = moved.iter_mut().zip(&gradients.solution.0[axis]);
-                let positions = at.position.0[axis].iter_mut().zip(&*base.position.0[axis]);
-                for ((moved, dx), (x, from)) in moves.zip(positions) {
-                    *moved += dx;
-                    *x = from + f64::from(*moved);
-                }
-            }
-        }
-        let inertia = |particle: usize| inertia(system, &self.air, particle, self.memory.step);
-        let shifts = self.pieces.shifts(&self.still.position, &moved, inertia);
-        for (axis, positions) in state.position.0.iter_mut().enumerate() {
-            for (particle, (x, pulled)) in
-                positions.iter_mut().zip(&*at.position.0[axis]).enumerate()
-            {
-                let shift = shifts.as_ref().map_or(0.0, |shifts| shifts.of(particle)[axis]);
-                *x = pulled + shift;
-            }
-        }
     }
 
     fn formula(&self, h: f64) -> Formula {

@@ -9,6 +9,8 @@ mod laplacian;
 mod ldlt;
 mod multigrid;
 #[cfg(test)]
+mod oracle;
+#[cfg(test)]
 mod problems;
 
 pub(crate) use block_jacobi::{BlockJacobi, Entries, LARGEST};

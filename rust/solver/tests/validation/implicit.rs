@@ -3,48 +3,14 @@
 use boucle_geometry::Vector;
 use boucle_solver::{
     Cloth, Error, IntegratorKind, Limiter, Mass, Settings, Simulation, SpringMaterial, StepSize,
-    StiffnessFrom, Wind, WindLaw,
 };
 
+use crate::lying::{Hung, PROMISE, limited, lying_sheet, settings};
 use crate::sheets::{
-    G, assert_close, classic, grid_mesh, grid_positions, in_wind, mass_on_spring, run, scattered,
-    simulation, steps_of,
+    G, assert_close, classic, grid_mesh, grid_positions, mass_on_spring, run, simulation, steps_of,
 };
 
 const IMPLICIT: [IntegratorKind; 2] = [IntegratorKind::ImplicitEuler, IntegratorKind::Bdf2];
-
-/// What is promised over the rate at a frame's end: 0.1 percentage points.
-const PROMISE: f64 = 1e-3;
-
-/// How a sheet hangs.
-#[derive(Clone, Copy, Debug)]
-enum Hung {
-    Corner,
-    Corners,
-    Edge,
-}
-
-/// 2 m x 2 m and 0.2 kg/m², lying flat before it falls.
-fn lying_sheet(side: u32, hung: Hung, material: SpringMaterial) -> Cloth {
-    let positions = grid_positions(side, side, 2.0 / f64::from(side - 1));
-    let corner = side * side - side;
-    let pins = match hung {
-        Hung::Corner => vec![corner],
-        Hung::Corners => vec![corner, side * side - 1],
-        Hung::Edge => (corner..side * side).collect(),
-    };
-    let mesh = grid_mesh(side, side);
-    Cloth::from_mesh("lying", mesh, positions, &Mass::Density(0.2), material, pins)
-        .expect("a sheet")
-}
-
-fn settings(integrator: IntegratorKind) -> Settings {
-    Settings { integrator, perturbation: 1e-6, ..Settings::default() }
-}
-
-fn limited(rate: f64) -> SpringMaterial {
-    SpringMaterial { deformation_rate: rate, ..SpringMaterial::default() }
-}
 
 /// z = w h of 0.5: the amplitude of a mass on a spring falls by 1/sqrt(1 + z²) a step. Moves are f32: 1e-5.
 #[test]
@@ -214,59 +180,6 @@ fn a_finer_tolerance_takes_more_steps_and_comes_nearer() {
     let substeps = ends.map(|(substeps, _)| substeps);
     assert!(substeps[0] < substeps[1] && substeps[1] < substeps[2], "{substeps:?}");
     assert!(errors[2] < errors[0], "{errors:?} m");
-}
-
-/// With stiffness of the continuum, the same settings give the same shape on any mesh.
-#[test]
-fn a_sheet_hangs_as_low_at_every_resolution() {
-    let material = SpringMaterial {
-        stiffness: [400.0, 200.0, 4.0],
-        stiffness_from: StiffnessFrom::Continuum,
-        limiter: Limiter::None,
-        ..SpringMaterial::default()
-    };
-    let lowest = [16, 32].map(|side| {
-        // A rate of 1 a second, for particles of 0.8 kg in all.
-        let air_damping = 0.8 / f64::from(side * side);
-        let material = SpringMaterial { air_damping, ..material.clone() };
-        let mut sheet = simulation(
-            lying_sheet(side, Hung::Edge, material),
-            settings(IntegratorKind::ImplicitEuler),
-        );
-        run(&mut sheet, 240);
-        let heights = sheet.positions(0);
-        heights.iter().map(|position| position.z).fold(f64::INFINITY, f64::min)
-    });
-    let difference = lowest[0] / lowest[1] - 1.0;
-    assert!(difference.abs() < 0.03, "{lowest:?}");
-}
-
-/// Pins at up to 20 m/s that turn back every other frame, in a gale, on three materials: never lost.
-#[test]
-fn torn_about_by_its_pins_and_the_wind_a_sheet_is_never_lost() {
-    for (number, stretch) in [50.0, 500.0, 20_000.0].into_iter().enumerate() {
-        let material = SpringMaterial {
-            stiffness: [stretch, 0.2 * stretch, 0.01 * stretch],
-            ..SpringMaterial::default()
-        };
-        let cloth = lying_sheet(16, Hung::Corners, material);
-        let mut targets = cloth.positions.clone();
-        let gale = Wind {
-            velocity: Vector::new(5.0, -12.0, 3.0),
-            law: WindLaw::Face { air_density: 1.2 },
-            region: boucle_solver::Region::Everywhere,
-        };
-        let mut sheet = in_wind(cloth, vec![gale], settings(IntegratorKind::Bdf2));
-        for frame in 0..120 {
-            let push = Vector::from_fn(|axis, _| scattered(3 * frame / 2 + axis + 1000 * number));
-            for target in &mut targets {
-                *target += push * (20.0 / 24.0 / push.norm().max(1.0));
-            }
-            sheet.set_pin_targets(0, &targets);
-            let certificate = sheet.advance().expect("a frame");
-            assert!(certificate.kinetic_energy.is_finite() && certificate.kinetic_energy < 1e4);
-        }
-    }
 }
 
 #[test]

@@ -1,178 +1,189 @@
 //! Dense products of one front, for three right-hand sides.
 //!
-//! `[S⁻¹; W]` is stored in panels of [`PANEL`] rows, a last one of half as many where that is enough; within a panel,
-//! column by column. A panel's sums stay in registers while its numbers stream by.
+//! A panel's sums stay in registers while its numbers stream by.
 
-use std::ops::Range;
+use pulp::Simd;
 
-use pulp::{Scalar, Simd, WithSimd};
+use super::panel::{Column, LANES, Lanes, Packed, ROWS};
 
-/// Rows of a panel.
-const PANEL: usize = 16;
+/// x, y, z of a particle, and a number that fills the vector.
+pub(super) type Row = [f32; 4];
 
-/// Rows of the last panel if it holds no more.
-const HALF: usize = PANEL / 2;
+/// The numbers of so many rows, an array an axis.
+type Sums<const GROUPS: usize> = [[Lanes<f32>; GROUPS]; 3];
 
-/// Numbers of a vector that hold so many rows.
-pub(super) fn padded(rows: usize) -> usize {
-    rows.next_multiple_of(PANEL)
+/// A panel of values.
+pub(super) type Values = Sums<2>;
+
+/// Memory of the front that is computed.
+#[derive(Default)]
+pub(super) struct Scratch {
+    pub(super) solved: Vec<[Row; QUAD]>,
+    pub(super) values: Vec<Values>,
 }
 
-/// Rows that are stored for so many.
-pub(super) fn panel_rows(rows: usize) -> usize {
-    rows.next_multiple_of(HALF)
+/// One front of a sweep.
+#[derive(Clone, Copy)]
+pub(super) struct Product<'a> {
+    pub(super) inverse: &'a [Lanes<f32>],
+    pub(super) below: &'a [Packed],
+    /// Where the rows below are in the values that follow the front's own, [`ROWS`] a panel.
+    pub(super) places: &'a [[u32; ROWS]],
 }
 
-/// Where the numbers of a front's panels are: first row, rows, and the range of each.
-pub(super) fn panels(
-    rows: usize,
-    columns: usize,
-) -> impl Iterator<Item = (usize, usize, Range<usize>)> {
-    (0..rows).step_by(PANEL).map(move |first| {
-        let height = if rows - first <= HALF { HALF } else { PANEL };
-        (first, height, first * columns..(first + height) * columns)
-    })
-}
-
-/// `out = matrix b`, each an array an axis.
-pub(super) struct Multiply<'a> {
-    pub(super) matrix: &'a [f32],
-    pub(super) rows: usize,
-    /// A number for each column.
-    pub(super) b: [&'a [f32]; 3],
-    /// As long as [`padded`] says.
-    pub(super) out: [&'a mut [f32]; 3],
-}
-
-impl WithSimd for Multiply<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        multiply(simd, self);
-    }
-}
-
+/// Replaces a front's own values b by `S⁻¹ b` and takes `W b` from those below.
 #[inline(always)]
-fn multiply<S: Simd>(simd: S, Multiply { matrix, rows, b, out }: Multiply<'_>) {
-    let columns = b[0].len();
-    let [x, y, z] = out;
-    for (first, height, range) in panels(rows, columns) {
-        let panel = &matrix[range];
-        let out = [&mut *x, &mut *y, &mut *z].map(|axis| &mut axis[first..][..height]);
-        match (height, S::F32_LANES) {
-            (PANEL, 16) | (HALF, 8) => multiply_panel::<S, 1>(simd, panel, b, out),
-            (PANEL, 8) | (HALF, 4) => multiply_panel::<S, 2>(simd, panel, b, out),
-            (PANEL, 4) => multiply_panel::<S, 4>(simd, panel, b, out),
-            (PANEL, _) => multiply_panel::<Scalar, PANEL>(Scalar::new(), panel, b, out),
-            _ => multiply_panel::<Scalar, HALF>(Scalar::new(), panel, b, out),
-        }
-    }
-}
-
-/// One panel of as many vectors of rows.
-#[inline(always)]
-fn multiply_panel<S: Simd, const VECTORS: usize>(
+pub(super) fn up<S: Simd, const VECTORS: usize>(
     simd: S,
-    panel: &[f32],
-    b: [&[f32]; 3],
-    out: [&mut [f32]; 3],
+    front: Product,
+    own: &mut [Row],
+    rest: &mut [Row],
+    scratch: &mut Scratch,
 ) {
-    let zero = simd.splat_f32s(0.0);
-    let mut sums = [[zero; VECTORS]; 3];
-    let (columns, _) = S::as_simd_f32s(panel).0.as_chunks::<VECTORS>();
-    for (((column, &x), &y), &z) in columns.iter().zip(b[0]).zip(b[1]).zip(b[2]) {
-        for (sums, b) in sums.iter_mut().zip([x, y, z]) {
-            let b = simd.splat_f32s(b);
-            for (sum, &numbers) in sums.iter_mut().zip(column) {
-                *sum = simd.add_f32s(*sum, simd.mul_f32s(numbers, b));
+    let count = own.len();
+    let mut below = front.below;
+    for places in front.places {
+        let columns;
+        (columns, below) = below.split_at(count);
+        let shares = multiply::<S, _, VECTORS, 2>(simd, columns, own);
+        for (quad, places) in places.as_chunks::<QUAD>().0.iter().enumerate() {
+            for (share, &place) in rows(&shares, quad).iter().zip(places) {
+                let to = &mut rest[place as usize];
+                *to = std::array::from_fn(|axis| to[axis] - share[axis]);
             }
         }
     }
-    for (out, sums) in out.into_iter().zip(sums) {
-        S::as_mut_simd_f32s(out).0.copy_from_slice(&sums);
+    let (mut whole, last) = front.inverse.split_at((count + LANES - 1) / ROWS * 2 * count);
+    let (panels, half) = scratch.solved.split_at_mut((count + LANES - 1) / ROWS * ROWS / QUAD);
+    for solved in panels.chunks_exact_mut(ROWS / QUAD) {
+        let columns;
+        (columns, whole) = whole.split_at(2 * count);
+        let sums = multiply::<S, _, VECTORS, 2>(simd, columns.as_chunks::<2>().0, own);
+        for (quad, solved) in solved.iter_mut().enumerate() {
+            *solved = rows(&sums, quad);
+        }
     }
-}
-
-/// Lanes of a partial sum.
-const LANES: usize = HALF;
-
-/// Partial sums of one column for three right-hand sides.
-pub(super) type Partial = [[f32; LANES]; 3];
-
-/// `x -= matrixᵀ front`.
-pub(super) struct SubtractTransposed<'a> {
-    pub(super) matrix: &'a [f32],
-    /// Rows that count.
-    pub(super) rows: Range<usize>,
-    /// 0 in the rows that do not count, and for all padding.
-    pub(super) front: [&'a [f32]; 3],
-    pub(super) x: [&'a mut [f32]; 3],
-    /// Memory.
-    pub(super) partials: &'a mut Vec<Partial>,
-}
-
-impl WithSimd for SubtractTransposed<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        subtract_transposed(simd, self);
+    if !last.is_empty() {
+        let sums = multiply::<S, _, VECTORS, 1>(simd, last, own);
+        for (quad, solved) in half[..LANES / QUAD].iter_mut().enumerate() {
+            *solved = rows(&sums, quad);
+        }
     }
+    own.copy_from_slice(&scratch.solved.as_flattened()[..count]);
 }
 
+/// Takes `Wᵀ x` of the values below from a front's own.
 #[inline(always)]
-fn subtract_transposed<S: Simd>(simd: S, product: SubtractTransposed<'_>) {
-    let SubtractTransposed { matrix, rows, front, x, partials } = product;
-    let columns = x[0].len();
-    partials.clear();
-    partials.resize(columns, Partial::default());
-    for (first, height, range) in panels(rows.end, columns) {
-        if first + height <= rows.start {
-            continue;
-        }
-        let panel = &matrix[range];
-        let front = front.map(|axis| &axis[first..][..height]);
-        match (height, S::F32_LANES) {
-            (PANEL, 8) => add_panel::<S, 2, 1>(simd, panel, front, partials),
-            (PANEL, 4) => add_panel::<S, 2, 2>(simd, panel, front, partials),
-            (PANEL, _) => add_panel::<Scalar, 2, LANES>(Scalar::new(), panel, front, partials),
-            (_, 8) => add_panel::<S, 1, 1>(simd, panel, front, partials),
-            (_, 4) => add_panel::<S, 1, 2>(simd, panel, front, partials),
-            _ => add_panel::<Scalar, 1, LANES>(Scalar::new(), panel, front, partials),
-        }
-    }
-    for (axis, x) in x.into_iter().enumerate() {
-        for (x, partial) in x.iter_mut().zip(partials.iter()) {
-            let [a, b, c, d, e, f, g, h] = partial[axis];
-            *x -= ((a + e) + (c + g)) + ((b + f) + (d + h));
-        }
-    }
-}
-
-/// Adds a panel of `GROUPS` times [`LANES`] rows, each of as many vectors, to the partial sums.
-#[inline(always)]
-fn add_panel<S: Simd, const GROUPS: usize, const VECTORS: usize>(
+pub(super) fn down<S: Simd, const VECTORS: usize>(
     simd: S,
-    panel: &[f32],
-    front: [&[f32]; 3],
-    partials: &mut [Partial],
+    front: Product,
+    own: &mut [Row],
+    rest: &[Row],
+    scratch: &mut Scratch,
 ) {
-    let zero = simd.splat_f32s(0.0);
-    let mut fronts = [[[zero; VECTORS]; GROUPS]; 3];
-    for (to, from) in fronts.iter_mut().zip(front) {
-        to.as_flattened_mut().copy_from_slice(S::as_simd_f32s(from).0);
+    let count = own.len();
+    let values = &mut scratch.values[..front.places.len()];
+    for (values, places) in values.iter_mut().zip(front.places) {
+        for (quad, places) in places.as_chunks::<QUAD>().0.iter().enumerate() {
+            let axes = transposed(places.map(|place| rest[place as usize]));
+            for (values, axis) in values.iter_mut().zip(axes) {
+                values[quad / 2].0[quad % 2 * QUAD..][..QUAD].copy_from_slice(&axis);
+            }
+        }
     }
-    let (columns, _) = S::as_simd_f32s(panel).0.as_chunks::<VECTORS>();
-    let (columns, _) = columns.as_chunks::<GROUPS>();
-    for (column, partial) in columns.iter().zip(partials) {
-        for (partial, front) in partial.iter_mut().zip(&fronts) {
-            let partial = S::as_mut_simd_f32s(partial).0;
-            for (numbers, front) in column.iter().zip(front) {
-                for ((sum, &a), &b) in partial.iter_mut().zip(numbers).zip(front) {
-                    *sum = simd.add_f32s(*sum, simd.mul_f32s(a, b));
+    let (pairs, last) = own.as_chunks_mut::<2>();
+    for (j, own) in pairs.iter_mut().enumerate() {
+        subtract_transposed::<S, VECTORS, 2>(simd, front.below, count, 2 * j, values, own);
+    }
+    if let [own] = last {
+        let own = std::array::from_mut(own);
+        subtract_transposed::<S, VECTORS, 1>(simd, front.below, count, count - 1, values, own);
+    }
+}
+
+/// Rows that are turned at once.
+pub(super) const QUAD: usize = 4;
+
+#[inline(always)]
+fn transposed([a, b, c, d]: [Row; QUAD]) -> [Row; QUAD] {
+    [0, 1, 2, 3].map(|i| [a[i], b[i], c[i], d[i]])
+}
+
+/// Four rows out of arrays an axis. What fills the vector is z once more, so that it stays a vector.
+#[inline(always)]
+fn rows<const GROUPS: usize>(sums: &Sums<GROUPS>, quad: usize) -> [Row; QUAD] {
+    let [x, y, z] = sums.each_ref().map(|groups| {
+        let lanes = &groups[quad / 2].0[quad % 2 * QUAD..];
+        [lanes[0], lanes[1], lanes[2], lanes[3]]
+    });
+    transposed([x, y, z, z])
+}
+
+/// The product of one panel.
+#[inline(always)]
+fn multiply<S: Simd, C: Column<GROUPS>, const VECTORS: usize, const GROUPS: usize>(
+    simd: S,
+    columns: &[C],
+    b: &[Row],
+) -> Sums<GROUPS> {
+    let zero = simd.splat_f32s(0.0);
+    let mut sums = [[[zero; VECTORS]; GROUPS]; 3];
+    for (column, b) in columns.iter().zip(b) {
+        let numbers = column.load::<S, VECTORS>(simd);
+        for (sums, &b) in sums.iter_mut().zip(b) {
+            let b = simd.splat_f32s(b);
+            for (sums, numbers) in sums.iter_mut().zip(&numbers) {
+                for (sum, &numbers) in sums.iter_mut().zip(numbers) {
+                    *sum = simd.add_f32s(*sum, simd.mul_f32s(numbers, b));
                 }
             }
         }
+    }
+    let mut out = [[Lanes::default(); GROUPS]; 3];
+    for (out, sums) in out.iter_mut().zip(&sums) {
+        for (out, sums) in out.iter_mut().zip(sums) {
+            S::as_mut_simd_f32s(&mut out.0).0.copy_from_slice(sums);
+        }
+    }
+    out
+}
+
+/// Some neighboring columns, all panels.
+#[inline(always)]
+fn subtract_transposed<S: Simd, const VECTORS: usize, const COLUMNS: usize>(
+    simd: S,
+    below: &[Packed],
+    count: usize,
+    first: usize,
+    values: &[Values],
+    own: &mut [Row; COLUMNS],
+) {
+    let zero = simd.splat_f32s(0.0);
+    let mut sums = [[[zero; VECTORS]; 3]; COLUMNS];
+    let mut below = below;
+    for values in values {
+        let panel;
+        (panel, below) = below.split_at(count);
+        let columns = &panel[first..][..COLUMNS];
+        for (sums, column) in sums.iter_mut().zip(columns) {
+            let numbers = column.load::<S, VECTORS>(simd);
+            for (sums, values) in sums.iter_mut().zip(values) {
+                for (numbers, values) in numbers.iter().zip(values) {
+                    let values = S::as_simd_f32s(&values.0).0;
+                    for ((sum, &a), &b) in sums.iter_mut().zip(numbers).zip(values) {
+                        *sum = simd.add_f32s(*sum, simd.mul_f32s(a, b));
+                    }
+                }
+            }
+        }
+    }
+    for (own, sums) in own.iter_mut().zip(&sums) {
+        let mut lanes = [Lanes::default(); 3];
+        for (lanes, sums) in lanes.iter_mut().zip(sums) {
+            S::as_mut_simd_f32s(&mut lanes.0).0.copy_from_slice(sums);
+        }
+        let [x, y, z] = lanes.map(|Lanes([a, b, c, d, e, f, g, h])| [a + e, b + f, c + g, d + h]);
+        let [a, b, c, d] = transposed([x, y, z, z]);
+        *own = std::array::from_fn(|axis| own[axis] - ((a[axis] + c[axis]) + (b[axis] + d[axis])));
     }
 }

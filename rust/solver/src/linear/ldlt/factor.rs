@@ -3,25 +3,30 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use super::super::laplacian::{Graph, Laplacian};
-use super::dense::panels;
+use super::panel::{Lanes, Packed, store_below, store_inverse};
 use super::symbolic::{Front, Symbolic};
 
 /// `[S⁻¹; W]` of every front.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Factor {
-    pub(super) numbers: Vec<f32>,
+    pub(super) inverse: Vec<Lanes<f32>>,
+    pub(super) below: Vec<Packed>,
 }
 
 impl Factor {
     pub(super) fn new(symbolic: &Symbolic, graph: &Graph, matrix: &Laplacian, arch: Arch) -> Self {
-        let mut numbers = vec![0.0; symbolic.number_count];
+        let mut inverse = vec![Lanes::default(); symbolic.inverse_len];
+        let mut below = vec![Lanes::default(); symbolic.below_len];
         if !symbolic.fronts.is_empty() {
             let eliminator = Eliminator { symbolic, graph, matrix, arch };
-            eliminator.eliminate(symbolic.fronts.len() - 1, &mut numbers);
+            eliminator.eliminate(symbolic.fronts.len() - 1, (&mut inverse, &mut below));
         }
-        Self { numbers }
+        Self { inverse, below }
     }
 }
+
+/// The S⁻¹ and the W of a subtree.
+type Part<'a> = (&'a mut [Lanes<f32>], &'a mut [Packed]);
 
 /// A square matrix whose lower triangle counts, column by column.
 #[derive(Default)]
@@ -53,24 +58,27 @@ struct Eliminator<'a> {
 
 impl Eliminator<'_> {
     /// Eliminates a subtree into its part of the numbers and returns what remains for the rows below its root.
-    fn eliminate(&self, root: usize, numbers: &mut [f32]) -> Square {
+    fn eliminate(&self, root: usize, (inverse, below): Part) -> Square {
         let front = &self.symbolic.fronts[root];
         let mut square = Square::zeros(front.count());
-        let own_numbers = front.number_count();
-        let (below, own) = numbers.split_at_mut(numbers.len() - own_numbers);
+        let (inverses, inverse) = inverse.split_at_mut(inverse.len() - front.inverse.len());
+        let (belows, below) = below.split_at_mut(below.len() - front.below.len());
         if let Some([lower, upper]) = front.block.children {
             let [lower, upper] = [lower as usize, upper as usize];
-            let upper_front = &self.symbolic.fronts[upper];
-            let first_of_upper = upper_front.block.first_block as usize;
-            let base = self.symbolic.fronts[front.block.first_block as usize].numbers;
-            let middle = self.symbolic.fronts[first_of_upper].numbers - base;
-            let (lower_numbers, upper_numbers) = below.split_at_mut(middle);
+            let end = &self.symbolic.fronts[lower];
+            let start = &self.symbolic.fronts[front.block.first_block as usize];
+            let (lower_inverses, upper_inverses) =
+                inverses.split_at_mut(end.inverse.end - start.inverse.start);
+            let (lower_belows, upper_belows) =
+                belows.split_at_mut(end.below.end - start.below.start);
+            let lower_part = (lower_inverses, lower_belows);
+            let upper_part = (upper_inverses, upper_belows);
             let remainders = if root - (front.block.first_block as usize) < TASK {
-                [self.eliminate(lower, lower_numbers), self.eliminate(upper, upper_numbers)]
+                [self.eliminate(lower, lower_part), self.eliminate(upper, upper_part)]
             } else {
                 let (lower, upper) = rayon::join(
-                    || self.eliminate(lower, lower_numbers),
-                    || self.eliminate(upper, upper_numbers),
+                    || self.eliminate(lower, lower_part),
+                    || self.eliminate(upper, upper_part),
                 );
                 [lower, upper]
             };
@@ -81,7 +89,10 @@ impl Eliminator<'_> {
         self.assemble(front, &mut square);
         let (count, own_count) = (front.count(), front.own_count());
         let columns = self.arch.dispatch(Elimination { square: &mut square, own: own_count });
-        store(&columns, count, own_count, own);
+        if own_count > 0 {
+            store_inverse(&columns, count, own_count, inverse);
+            store_below(&columns, count, own_count, below);
+        }
         remainder(&square, own_count)
     }
 
@@ -250,16 +261,4 @@ fn inverse_and_below(square: &Square, own: usize) -> Vec<f64> {
         }
     }
     numbers
-}
-
-/// Writes columns of f64 as panels of f32.
-fn store(columns: &[f64], rows: usize, own: usize, out: &mut [f32]) {
-    for (first, height, range) in panels(rows, own) {
-        for (j, out) in out[range].chunks_exact_mut(height).enumerate() {
-            let column = &columns[j * rows + first..(j + 1) * rows];
-            for (out, number) in out.iter_mut().zip(column) {
-                *out = *number as f32;
-            }
-        }
-    }
 }

@@ -1,10 +1,12 @@
 //! What is known before any number is: the fronts of all blocks and how they fit into each other.
 
+use std::ops::Range;
+
 use boucle_geometry::Vector;
 
 use super::super::dissection::{Block, Dissection};
 use super::super::laplacian::Graph;
-use super::dense::{padded, panel_rows};
+use super::panel::{inverse_len, panel_count};
 
 /// Rows of a child's front that follow each other in its parent's as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,12 +26,10 @@ pub(super) struct Front {
     pub(super) rows: Vec<u32>,
     /// How those lie in the parent's front.
     pub(super) runs: Vec<Run>,
-    /// Where its numbers begin in the factor.
-    pub(super) numbers: usize,
-    /// Where its vectors begin in the workspace.
-    pub(super) vectors: usize,
-    /// The same of the first block of its subtree.
-    pub(super) first_vectors: usize,
+    /// Where its S⁻¹ is in the factor.
+    pub(super) inverse: Range<usize>,
+    /// Where its W is.
+    pub(super) below: Range<usize>,
 }
 
 impl Front {
@@ -42,22 +42,17 @@ impl Front {
         self.own_count() + self.rows.len()
     }
 
-    /// Rows with padding.
-    pub(super) fn stride(&self) -> usize {
-        padded(self.count())
+    /// How many vectors a solve reads for it.
+    pub(super) fn work(&self) -> usize {
+        self.inverse.len() + 2 * self.below.len()
     }
 
-    /// How much a solve computes in it.
-    pub(super) fn number_count(&self) -> usize {
-        panel_rows(self.count()) * self.own_count()
-    }
-
-    pub(super) fn vector_count(&self) -> usize {
-        3 * self.stride()
+    pub(super) fn own_places(&self) -> Range<usize> {
+        self.block.own.start as usize..self.block.own.end as usize
     }
 
     /// The places of its subtree.
-    pub(super) fn places(&self) -> std::ops::Range<usize> {
+    pub(super) fn places(&self) -> Range<usize> {
         self.block.first_place as usize..self.block.own.end as usize
     }
 }
@@ -70,8 +65,10 @@ pub(super) struct Symbolic {
     pub(super) order: Vec<u32>,
     /// The place of each particle.
     pub(super) places: Vec<u32>,
-    pub(super) number_count: usize,
-    pub(super) vector_count: usize,
+    /// Vectors of all S⁻¹.
+    pub(super) inverse_len: usize,
+    /// Those of all W.
+    pub(super) below_len: usize,
 }
 
 impl Symbolic {
@@ -80,19 +77,11 @@ impl Symbolic {
         let mut symbolic = Self { order, places, ..Self::default() };
         for block in blocks {
             let rows = symbolic.rows_below(graph, &block);
-            let front = Front {
-                rows,
-                runs: Vec::new(),
-                numbers: symbolic.number_count,
-                vectors: symbolic.vector_count,
-                first_vectors: symbolic
-                    .fronts
-                    .get(block.first_block as usize)
-                    .map_or(symbolic.vector_count, |first| first.vectors),
-                block,
-            };
-            symbolic.number_count += front.number_count();
-            symbolic.vector_count += front.vector_count();
+            let own = block.own.len();
+            let inverse = symbolic.inverse_len..symbolic.inverse_len + inverse_len(own);
+            let below = symbolic.below_len..symbolic.below_len + panel_count(rows.len()) * own;
+            (symbolic.inverse_len, symbolic.below_len) = (inverse.end, below.end);
+            let front = Front { block, rows, runs: Vec::new(), inverse, below };
             for child in front.block.children.into_iter().flatten() {
                 let child = &mut symbolic.fronts[child as usize];
                 child.runs = runs(&child.rows, &front);

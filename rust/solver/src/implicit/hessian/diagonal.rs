@@ -40,12 +40,7 @@ impl Springs<'_> {
         self.add_one_end::<S, SUBTRACT>(simd, entering, [offset, 0], own.start, &mut out);
         self.add_one_end::<S, SUBTRACT>(simd, near, [offset, 0], own.start, &mut out);
         self.add_one_end::<S, SUBTRACT>(simd, leaving, [0, offset], own.start, &mut out);
-        // So few at a time that the places of near ends and of far ends are apart.
-        let apart = offset / S::F32_LANES * S::F32_LANES;
-        for start in inside.clone().step_by(apart.max(1)) {
-            let springs = start..inside.end.min(start + apart);
-            self.add_both_ends::<S, SUBTRACT>(simd, springs, own.start, &mut out);
-        }
+        self.add_both_ends::<S, SUBTRACT>(simd, inside, own.start, &mut out);
     }
 
     /// Of springs by the particles that they begin at, one end, that many particles further on than the beginning.
@@ -72,7 +67,7 @@ impl Springs<'_> {
         );
     }
 
-    /// Of springs by the particles that they begin at, both ends, whose places must be apart.
+    /// Of springs by the particles that they begin at, both ends, which must be further apart than the width of a vector.
     #[inline(always)]
     fn add_both_ends<S: Simd, const SUBTRACT: bool>(
         &self,
@@ -81,19 +76,17 @@ impl Springs<'_> {
         start: usize,
         [x, y, z]: &mut [&mut [f32]; 3],
     ) {
+        if springs.is_empty() {
+            return;
+        }
         let Diagonal { first, offset, .. } = *self.diagonal;
-        let (place, count) = (springs.start - start, springs.len());
-        let (nx, fx) = x[place..].split_at_mut(offset);
-        let (ny, fy) = y[place..].split_at_mut(offset);
-        let (nz, fz) = z[place..].split_at_mut(offset);
+        let places = springs.start - start..springs.end + offset - start;
         add_to_both_ends::<S, SUBTRACT>(
             simd,
             self.tangents.of(springs.start - first..springs.end - first),
             [of(self.p, springs.clone()), of(self.p, springs.start + offset..springs.end + offset)],
-            [
-                [&mut nx[..count], &mut ny[..count], &mut nz[..count]],
-                [&mut fx[..count], &mut fy[..count], &mut fz[..count]],
-            ],
+            [&mut x[places.clone()], &mut y[places.clone()], &mut z[places]],
+            offset,
         );
     }
 }
@@ -171,54 +164,63 @@ fn one_end_whole<S: Simd, const SUBTRACT: bool>(
     }
 }
 
-/// What springs side by side add to their near ends and take from their far ends.
+/// What springs side by side add to their near ends and take from their far ends, `offset` places further on.
 #[inline(always)]
 fn add_to_both_ends<S: Simd, const SUBTRACT: bool>(
     simd: S,
     tangents: [&[f32]; 4],
-    [own, other]: [[&[f32]; 3]; 2],
-    [near, far]: [[&mut [f32]; 3]; 2],
+    p: [[&[f32]; 3]; 2],
+    [x, y, z]: [&mut [f32]; 3],
+    offset: usize,
 ) {
-    let whole = own[0].len() / S::F32_LANES * S::F32_LANES;
-    let (tangents, tangents_rest) = split(tangents, whole);
-    let (own, own_rest) = split(own, whole);
-    let (other, other_rest) = split(other, whole);
-    let (near, near_rest) = split_mut(near, whole);
-    let (far, far_rest) = split_mut(far, whole);
-    both_ends_whole::<S, SUBTRACT>(simd, tangents, [own, other], [near, far]);
-    let rest = [near_rest, far_rest];
-    both_ends_whole::<Scalar, SUBTRACT>(Scalar::new(), tangents_rest, [own_rest, other_rest], rest);
+    let whole = both_ends_whole::<S, SUBTRACT>(
+        simd,
+        tangents,
+        p,
+        [&mut *x, &mut *y, &mut *z],
+        offset,
+    );
+    let tangents = tangents.map(
+        #[inline(always)]
+        |axis| &axis[whole..],
+    );
+    let [near, far] = p;
+    let [near, far] = [split(near, whole).1, split(far, whole).1];
+    let out = [&mut x[whole..], &mut y[whole..], &mut z[whole..]];
+    both_ends_whole::<Scalar, SUBTRACT>(Scalar::new(), tangents, [near, far], out, offset);
 }
 
+/// The same for those that fill vectors, and how many those are.
 #[inline(always)]
 fn both_ends_whole<S: Simd, const SUBTRACT: bool>(
     simd: S,
     tangents: [&[f32]; 4],
     p: [[&[f32]; 3]; 2],
-    [near, far]: [[&mut [f32]; 3]; 2],
-) {
-    let tangents = Vectors::<S, 4>::new(tangents);
-    let [own, other] = p.map(Vectors::<S, 3>::new);
-    let [nx, ny, nz] = near.map(|axis| S::as_mut_simd_f32s(axis).0);
-    let [fx, fy, fz] = far.map(|axis| S::as_mut_simd_f32s(axis).0);
-    let count = nx.len();
-    let (ny, nz) = (&mut ny[..count], &mut nz[..count]);
-    let (fx, fy, fz) = (&mut fx[..count], &mut fy[..count], &mut fz[..count]);
-    let (tangents, own, other) = (tangents.first(count), own.first(count), other.first(count));
+    [x, y, z]: [&mut [f32]; 3],
+    offset: usize,
+) -> usize {
+    let count = tangents[0].len() / S::F32_LANES;
+    let tangents = Vectors::<S, 4>::new(tangents).first(count);
+    let [near, far] = p.map(
+        #[inline(always)]
+        |axes| Vectors::<S, 3>::new(axes).first(count),
+    );
     for i in 0..count {
-        let [x, y, z] = pull(simd, tangents.at(i), own.at(i), other.at(i));
-        for (near, far, force) in
-            [(&mut nx[i], &mut fx[i], x), (&mut ny[i], &mut fy[i], y), (&mut nz[i], &mut fz[i], z)]
-        {
-            if SUBTRACT {
-                *near = simd.sub_f32s(*near, force);
-                *far = simd.add_f32s(*far, force);
-            } else {
-                *near = simd.add_f32s(*near, force);
-                *far = simd.sub_f32s(*far, force);
-            }
+        let [fx, fy, fz] = pull(simd, tangents.at(i), near.at(i), far.at(i));
+        for (axis, force) in [(&mut *x, fx), (&mut *y, fy), (&mut *z, fz)] {
+            let own = vector_mut::<S>(axis, i * S::F32_LANES);
+            *own = if SUBTRACT { simd.sub_f32s(*own, force) } else { simd.add_f32s(*own, force) };
+            let other = vector_mut::<S>(axis, i * S::F32_LANES + offset);
+            *other =
+                if SUBTRACT { simd.add_f32s(*other, force) } else { simd.sub_f32s(*other, force) };
         }
     }
+    count * S::F32_LANES
+}
+
+#[inline(always)]
+fn vector_mut<S: Simd>(axis: &mut [f32], place: usize) -> &mut S::f32s {
+    &mut S::as_mut_simd_f32s(&mut axis[place..place + S::F32_LANES]).0[0]
 }
 
 /// Arrays as vectors of one width.

@@ -173,9 +173,15 @@ impl Simulation {
     /// [`Error::Diverged`] leaves the state of the last good frame; [`Error::TooManySubsteps`] and
     /// [`Error::Unstable`] leave the state as it is.
     pub fn advance(&mut self) -> Result<Certificate> {
-        let substeps = self.plan()?;
+        let mut substeps = self.plan()?;
         self.keep();
-        if self.run(substeps, false).is_some() {
+        let mut lost = self.run(substeps, false);
+        if let (None, Some(more)) = (lost, self.plan_again(substeps)) {
+            self.fall_back();
+            substeps = more;
+            lost = self.run(substeps, false);
+        }
+        if lost.is_some() {
             // Once more, looking after each step: what is lost spreads from step to step.
             self.fall_back();
             let first = self.run(substeps, true).unwrap_or(0);
@@ -185,7 +191,7 @@ impl Simulation {
         self.frame += 1;
         self.substeps_taken = substeps;
         if let Some(memory) = self.method.memory_mut() {
-            memory.substeps = self.accuracy.after(substeps, memory.error / f64::from(substeps));
+            memory.substeps = self.accuracy.after(substeps, memory.mean_error(substeps));
             memory.error = 0.0;
         }
         self.iterations_taken = self.method.take_iterations();

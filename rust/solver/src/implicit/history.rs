@@ -40,6 +40,11 @@ impl Memory {
         (self.step, self.error, self.substeps) = (other.step, other.error, other.substeps);
     }
 
+    /// Error (m) of each of so many steps of the frame, on average.
+    pub(crate) fn mean_error(&self, substeps: u32) -> f64 {
+        self.error / f64::from(substeps)
+    }
+
     /// Forgets all that led to the present state.
     pub(crate) fn clear(&mut self) {
         self.tensions.fill(0.0);

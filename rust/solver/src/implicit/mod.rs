@@ -223,9 +223,10 @@ impl Implicit {
     /// Solves for the move from the present guess.
     fn solve(&mut self, system: &System, h: f64) -> Solved {
         let Self { preconditioner, hessian, blocks, scratch, gradients, .. } = self;
-        let matrix = &hessian.on(&system.layout);
+        let matrix = &hessian.without_bends(&system.layout);
         let inverse = preconditioner.inverse(system, h);
-        gradients.solve(matrix, &mut Smoothed { matrix, blocks, inverse, scratch }, STOP)
+        let operator = &hessian.on(&system.layout);
+        gradients.solve(operator, &mut Smoothed { matrix, blocks, inverse, scratch }, STOP)
     }
 
     /// Moves the guess by the solution.

@@ -8,7 +8,7 @@
 //! z = C r        z += P⁻¹ (r - H z)        z += C (r - H z)
 //! ```
 //!
-//! That is symmetric and positive definite for any P: the sum of what the steps of C do together, and of P⁻¹ between a
+//! with H without its bend springs. That is symmetric and positive definite for any P: the sum of what the steps of C do together, and of P⁻¹ between a
 //! matrix and its transpose.
 //!
 //! Hanging sheets take a quarter of the iterations that P⁻¹ alone takes, and have a smaller error when they stop. With one
@@ -39,6 +39,7 @@ impl Scratch {
 
 /// The preconditioner, of what it is made.
 pub(super) struct Smoothed<'a> {
+    /// Without bend springs.
     pub(super) matrix: &'a Product<'a>,
     pub(super) blocks: &'a BlockJacobi,
     pub(super) inverse: &'a mut dyn Inverse,

@@ -118,7 +118,7 @@ impl Making {
     fn precondition(&mut self, direction: &[Vector]) -> Vectors {
         let Self { system, implicit, .. } = self;
         let Implicit { preconditioner, hessian, blocks, scratch, .. } = implicit;
-        let matrix = &hessian.on(&system.layout);
+        let matrix = &hessian.without_bends(&system.layout);
         let inverse = preconditioner.inverse(system, H);
         let mut smoothed = Smoothed { matrix, blocks, inverse, scratch };
         let mut z = Field::zeros(direction.len());
@@ -131,7 +131,8 @@ impl Making {
         let mut x = direction.to_vec();
         let mut largest = 0.0;
         for _ in 0..60 {
-            let product = field(&self.product(&x));
+            let matrix = self.implicit.hessian.without_bends(&self.system.layout);
+            let product = field(&apply(&matrix, &x));
             let [mut step, mut z] = [(); 2].map(|()| Field::zeros(x.len()));
             self.implicit.blocks.relax([0.0, 1.0], &product, &mut step, &mut z);
             let next = vectors_of(&z);

@@ -7,6 +7,7 @@ use super::CHUNK;
 use crate::cloth::Cloth;
 use crate::law::Spring;
 use crate::law::spring::Law;
+use crate::material::SpringKind;
 
 /// A diagonal holds a spring for at least one in so many of a cloth's particles; fewer are gathered.
 const SPARSEST: usize = 8;
@@ -20,6 +21,7 @@ pub(crate) struct Diagonal {
     pub(crate) stiffness: f64,
     pub(crate) damping: f64,
     pub(crate) law: Law,
+    pub(crate) is_bend: bool,
     /// For each particle in a row (m); 0 where it has no such spring.
     pub(crate) rest_lengths: Vec<f64>,
 }
@@ -50,6 +52,8 @@ pub(crate) struct Gather {
 pub(crate) struct GatherSlot {
     /// The gather that it belongs to.
     pub(crate) gather: u32,
+    /// Whether its springs resist bending: none stands beside one of another kind.
+    pub(crate) is_bend: bool,
     pub(crate) neighbors: [u32; GATHERED],
     pub(crate) stiffness: [f64; GATHERED],
     pub(crate) damping: [f64; GATHERED],
@@ -158,23 +162,30 @@ impl Layout {
     fn add_gather(&mut self, particles: &[usize], halves: &[Vec<Half>], law: Law) {
         let first_slot = self.gather_slots.len();
         let of_lane = |lane: usize| particles[lane.min(particles.len() - 1)];
-        let degree = particles.iter().map(|&particle| halves[particle].len()).max().unwrap_or(0);
-        for slot in 0..degree {
-            let mut lanes = GatherSlot {
-                gather: self.gathers.len() as u32,
-                neighbors: std::array::from_fn(|lane| of_lane(lane) as u32),
-                stiffness: [0.0; GATHERED],
-                damping: [0.0; GATHERED],
-                rest_lengths: [0.0; GATHERED],
+        for is_bend in [false, true] {
+            let of_kind = |particle: usize| {
+                let springs = halves[particle].iter();
+                springs.filter(move |half| (half.spring.kind == SpringKind::Bend) == is_bend)
             };
-            for lane in 0..GATHERED {
-                let Some(half) = halves[of_lane(lane)].get(slot) else { continue };
-                lanes.neighbors[lane] = half.neighbor;
-                lanes.stiffness[lane] = half.spring.stiffness;
-                lanes.damping[lane] = half.spring.damping;
-                lanes.rest_lengths[lane] = half.spring.rest_length;
+            let degree = particles.iter().map(|&particle| of_kind(particle).count()).max();
+            for slot in 0..degree.unwrap_or(0) {
+                let mut lanes = GatherSlot {
+                    gather: self.gathers.len() as u32,
+                    is_bend,
+                    neighbors: std::array::from_fn(|lane| of_lane(lane) as u32),
+                    stiffness: [0.0; GATHERED],
+                    damping: [0.0; GATHERED],
+                    rest_lengths: [0.0; GATHERED],
+                };
+                for lane in 0..GATHERED {
+                    let Some(half) = of_kind(of_lane(lane)).nth(slot) else { continue };
+                    lanes.neighbors[lane] = half.neighbor;
+                    lanes.stiffness[lane] = half.spring.stiffness;
+                    lanes.damping[lane] = half.spring.damping;
+                    lanes.rest_lengths[lane] = half.spring.rest_length;
+                }
+                self.gather_slots.push(lanes);
             }
-            self.gather_slots.push(lanes);
         }
         self.gathers.push(Gather {
             particles: std::array::from_fn(|lane| of_lane(lane) as u32),
@@ -213,9 +224,10 @@ fn diagonal(springs: &[Spring], base: usize, law: Law) -> Diagonal {
     for spring in springs {
         rest_lengths[spring.ends[0] as usize - first] = spring.rest_length;
     }
-    let Spring { ends: [a, b], stiffness, damping, .. } = springs[0];
+    let Spring { ends: [a, b], kind, stiffness, damping, .. } = springs[0];
     let offset = (b - a) as usize;
-    Diagonal { first: base + first, offset, stiffness, damping, law, rest_lengths }
+    let is_bend = kind == SpringKind::Bend;
+    Diagonal { first: base + first, offset, stiffness, damping, law, is_bend, rest_lengths }
 }
 
 fn scatter(springs: &[Spring], base: u32, halves: &mut [Vec<Half>]) {

@@ -93,6 +93,12 @@ impl Simulation {
             }
         }
     }
+
+    /// Steps with which the frame just run is to be done once more, if it is.
+    pub(super) fn plan_again(&self, substeps: u32) -> Option<u32> {
+        let memory = self.method.memory().filter(|_| self.settings.step_size == StepSize::Auto)?;
+        self.accuracy.again(substeps, memory.mean_error(substeps))
+    }
 }
 
 /// Root mean square distance (m) of the particles from their middle.

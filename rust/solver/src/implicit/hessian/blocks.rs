@@ -1,4 +1,4 @@
-//! The 3 x 3 blocks on the diagonal of the Hessian.
+//! The 3 x 3 blocks on the diagonal of the Hessian without bend springs.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ impl Hessian {
     /// Inverts the blocks on the diagonal.
     pub(in crate::implicit) fn invert_blocks(&self, layout: &Layout, inverse: &mut BlockJacobi) {
         inverse.invert(&self.inertia, |first, blocks| {
-            self.arch.dispatch(Blocks { hessian: self, layout, first, blocks });
+            self.arch.dispatch(Blocks { hessian: self, layout, first, entries: blocks });
         });
     }
 }
@@ -22,7 +22,7 @@ struct Blocks<'a> {
     hessian: &'a Hessian,
     layout: &'a Layout,
     first: usize,
-    blocks: Entries<&'a mut [f32]>,
+    entries: Entries<&'a mut [f32]>,
 }
 
 impl WithSimd for Blocks<'_> {
@@ -30,7 +30,7 @@ impl WithSimd for Blocks<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { hessian, layout, first, mut blocks } = self;
+        let Self { hessian, layout, first, entries: mut blocks } = self;
         let own = first..first + blocks[0].len();
         for entries in &mut blocks {
             entries.fill(0.0);
@@ -39,6 +39,9 @@ impl WithSimd for Blocks<'_> {
             blocks[entry].copy_from_slice(&hessian.inertia[own.clone()]);
         }
         for (diagonal, tangents) in layout.diagonals.iter().zip(&hessian.diagonals) {
+            if diagonal.is_bend {
+                continue;
+            }
             for begin in [0, diagonal.offset] {
                 let start = diagonal.first + begin;
                 let from = start.max(own.start);
@@ -50,7 +53,9 @@ impl WithSimd for Blocks<'_> {
             }
         }
         for gather in &layout.gathers[layout.gathers_of_chunk[first / CHUNK].clone()] {
-            for slot in &hessian.slots[gather.slots.clone()] {
+            let slots = gather.slots.clone();
+            let springs = layout.gather_slots[slots.clone()].iter().zip(&hessian.slots[slots]);
+            for (_, slot) in springs.filter(|(springs, _)| !springs.is_bend) {
                 for (lane, &particle) in gather.particles[..gather.count].iter().enumerate() {
                     let place = particle as usize - first;
                     let tangents = slot.each_ref().map(|lanes| &lanes[lane..=lane]);

@@ -173,13 +173,8 @@ fn add_to_both_ends<S: Simd, const SUBTRACT: bool>(
     [x, y, z]: [&mut [f32]; 3],
     offset: usize,
 ) {
-    let whole = both_ends_whole::<S, SUBTRACT>(
-        simd,
-        tangents,
-        p,
-        [&mut *x, &mut *y, &mut *z],
-        offset,
-    );
+    let whole =
+        both_ends_whole::<S, SUBTRACT>(simd, tangents, p, [&mut *x, &mut *y, &mut *z], offset);
     let tangents = tangents.map(
         #[inline(always)]
         |axis| &axis[whole..],

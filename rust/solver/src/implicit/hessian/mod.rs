@@ -120,6 +120,11 @@ impl Hessian {
 
     /// The product with H on the springs of a layout.
     pub(super) fn on<'a>(&'a self, layout: &'a Layout) -> Product<'a> {
-        Product { hessian: self, layout }
+        Product { hessian: self, layout, has_bends: true }
+    }
+
+    /// The same without bend springs: what smoothing works with. They are soft, and a third of the work.
+    pub(super) fn without_bends<'a>(&'a self, layout: &'a Layout) -> Product<'a> {
+        Product { hessian: self, layout, has_bends: false }
     }
 }

@@ -12,6 +12,7 @@ use crate::linear::{Field, Operator};
 pub(in crate::implicit) struct Product<'a> {
     pub(super) hessian: &'a Hessian,
     pub(super) layout: &'a Layout,
+    pub(super) has_bends: bool,
 }
 
 impl Product<'_> {
@@ -47,7 +48,8 @@ impl<const SUBTRACT: bool> WithSimd for Rows<'_, SUBTRACT> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { product: Product { hessian, layout }, p, first, mut out } = self;
+        let Self { product, p, first, mut out } = self;
+        let Product { hessian, layout, has_bends } = *product;
         if !SUBTRACT {
             for axis in &mut out {
                 axis.fill(0.0);
@@ -55,6 +57,9 @@ impl<const SUBTRACT: bool> WithSimd for Rows<'_, SUBTRACT> {
         }
         let own = first..first + out[0].len();
         for (diagonal, tangents) in layout.diagonals.iter().zip(&hessian.diagonals) {
+            if diagonal.is_bend && !has_bends {
+                continue;
+            }
             let springs = Springs { diagonal, tangents, p };
             springs.add::<S, SUBTRACT>(simd, &own, out.each_mut().map(|axis| &mut **axis));
         }
@@ -64,6 +69,9 @@ impl<const SUBTRACT: bool> WithSimd for Rows<'_, SUBTRACT> {
             let own = pick(p, &gather.particles);
             let mut sums = [[0.0_f32; GATHERED]; 3];
             for (slot, [nx, ny, nz, beta]) in springs {
+                if slot.is_bend && !has_bends {
+                    continue;
+                }
                 let [ox, oy, oz] = pick(p, &slot.neighbors);
                 for i in 0..GATHERED {
                     let (dx, dy, dz) = (own[0][i] - ox[i], own[1][i] - oy[i], own[2][i] - oz[i]);

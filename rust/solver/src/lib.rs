@@ -11,6 +11,7 @@
 //! gathers its own forces in a fixed order, and nothing is summed across threads.
 
 mod aligned;
+mod awake;
 mod certificate;
 mod checkpoint;
 mod cloth;

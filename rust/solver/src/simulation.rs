@@ -7,6 +7,7 @@ use std::fmt;
 use boucle_geometry::Vector;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use crate::awake::with_others_awake;
 use crate::certificate::{Certificate, certify, length};
 use crate::checkpoint::Checkpoint;
 use crate::cloth::{Cloth, FARTHEST, placed};
@@ -14,6 +15,7 @@ use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::force::Wind;
 use crate::implicit::{Accuracy, Memory};
+use crate::kernel::CHUNK;
 use crate::law::spring::Law;
 use crate::limit::Limit;
 use crate::material::SpringKind;
@@ -224,11 +226,15 @@ impl Simulation {
         }
         self.pins.start(&mut self.state, duration);
         let Self { system, pins, limits, state, method, threads, .. } = self;
+        // No pass has work for more.
+        let others = state.len() / CHUNK;
         threads.install(|| {
-            (1..=substeps).find_map(|substep| {
-                let is_last = substep == substeps;
-                Step { system, pins, h, is_last }.run(state, method, limits);
-                if watches || is_last { first_lost(state) } else { None }
+            with_others_awake(others, || {
+                (1..=substeps).find_map(|substep| {
+                    let is_last = substep == substeps;
+                    Step { system, pins, h, is_last }.run(state, method, limits);
+                    if watches || is_last { first_lost(state) } else { None }
+                })
             })
         })
     }

@@ -6,11 +6,15 @@ use crate::pins::Pins;
 use crate::state::State;
 use crate::system::System;
 
-/// How often edges that limiters cannot hold are pulled, at the most: where pins alone force the strain, it is in vain.
-const PULLS: usize = 1;
+/// Sweeps that limiters may take after an implicit step. Within a frame, what they leave the next step mends.
+const SWEEPS: usize = 48;
 
-/// The same at the end of a frame, whose result is seen.
-const PULLS_AT_END: usize = 8;
+/// The same at the end of a frame, whose result is seen: a thousand sweeps cost as much as a few iterations of a pull.
+const SWEEPS_AT_END: usize = 2000;
+
+/// How often edges that are not held then are pulled, at the most; and the sweeps after each pull.
+const PULLS: usize = 4;
+const SWEEPS_AFTER_PULL: usize = 480;
 
 /// What a substep works with.
 pub(crate) struct Step<'a> {
@@ -37,12 +41,21 @@ impl Step<'_> {
                 }
             }
             Method::Implicit(implicit) => {
-                for _ in 0..if self.is_last { PULLS_AT_END } else { PULLS } {
-                    let is_held = |limit: &mut Limit| limit.hold(state, inverse_masses, self.h);
-                    if limits.iter_mut().map(is_held).fold(true, |all, held| all & held) {
+                let mut hold = |state: &mut State, most_sweeps| {
+                    let is_held =
+                        |limit: &mut Limit| limit.hold(state, inverse_masses, self.h, most_sweeps);
+                    limits.iter_mut().map(is_held).fold(true, |all, held| all & held)
+                };
+                if !self.is_last {
+                    hold(state, SWEEPS);
+                    return;
+                }
+                let mut is_held = hold(state, SWEEPS_AT_END);
+                for _ in 0..PULLS {
+                    if is_held || !implicit.pull(self.system, state) {
                         break;
                     }
-                    implicit.pull(self.system, state);
+                    is_held = hold(state, SWEEPS_AFTER_PULL);
                 }
             }
         }

@@ -77,6 +77,7 @@ pub(crate) struct Implicit {
     scratch: Scratch,
     hessian: Hessian,
     taut: Taut,
+    pulling: pull::Scratch,
     pieces: Pieces,
     gradients: ConjugateGradient,
     /// Base position, and the target in the place of velocities.
@@ -111,6 +112,7 @@ impl Implicit {
             blocks: BlockJacobi::new(count),
             scratch: Scratch::new(count),
             hessian: Hessian::new(&system.layout, count),
+            pulling: pull::Scratch::new(count, taut.edge_count()),
             taut,
             pieces: Pieces::new(count, springs),
             gradients: ConjugateGradient::new(count),

@@ -39,15 +39,21 @@ impl Limit {
         }
     }
 
-    /// Moves ends that are too far apart after an implicit step, which has already held them as well as it can, and
-    /// says whether all are held now.
-    pub(crate) fn hold(&mut self, state: &mut State, inverse_masses: &[f64], h: f64) -> bool {
+    /// Moves ends that are too far apart after an implicit step, which has already held them as well as it can, in so
+    /// many sweeps at the most, and says whether all are held now.
+    pub(crate) fn hold(
+        &mut self,
+        state: &mut State,
+        inverse_masses: &[f64],
+        h: f64,
+        most_sweeps: usize,
+    ) -> bool {
         match self {
             Self::Provot(limit) => {
                 limit.apply(state, inverse_masses, h);
                 true
             }
-            Self::Project(limit) => limit.hold(state, inverse_masses),
+            Self::Project(limit) => limit.hold(state, inverse_masses, most_sweeps),
         }
     }
 

@@ -34,15 +34,21 @@ const SWEEPS: usize = 2;
 /// Sweeps at the end of a frame: a hanging sheet takes 3 to 20, more are of use only where pins force the strain.
 const SWEEPS_AT_END: usize = 480;
 
-/// The same after an implicit step, which can pull edges in another way.
-const SWEEPS_TO_HOLD: usize = 48;
-
 /// Sweeps before the metric changes. Where a hanging chain has to swing aside to reach, its near ends must give way
 /// too: then sweeps with the ends more even help.
 const SWEEPS_OF_A_METRIC: usize = 16;
 
-/// By how much the metrics even out the ends: 0 outward, 1 by inverse masses alone.
-const EVENNESS: [f64; 3] = [0.0, 0.5, 1.0];
+/// By how much a metric evens out the ends of edges.
+#[derive(Clone, Copy, Debug)]
+enum Evenness {
+    Outward,
+    /// Half way, by the logarithm.
+    Between,
+    /// By inverse masses alone.
+    Even,
+}
+
+const METRICS: [Evenness; 3] = [Evenness::Outward, Evenness::Between, Evenness::Even];
 
 #[derive(Debug)]
 pub(crate) struct Project {
@@ -128,11 +134,16 @@ impl Project {
     }
 
     /// Projects without the sweeps of explicit steps, and says whether all edges are held.
-    pub(crate) fn hold(&mut self, state: &mut State, inverse_masses: &[f64]) -> bool {
+    pub(crate) fn hold(
+        &mut self,
+        state: &mut State,
+        inverse_masses: &[f64],
+        most_sweeps: usize,
+    ) -> bool {
         if !self.find_too_long(state) {
             return true;
         }
-        let is_held = self.project(state, inverse_masses, SWEEPS_TO_HOLD);
+        let is_held = self.project(state, inverse_masses, most_sweeps);
         self.now.clear();
         is_held
     }
@@ -176,7 +187,7 @@ impl Project {
     /// Moves the ends of edges that are still too long.
     fn project(&mut self, state: &mut State, inverse_masses: &[f64], most: usize) -> bool {
         for sweep in 0..most {
-            let evenness = EVENNESS[sweep / SWEEPS_OF_A_METRIC % EVENNESS.len()];
+            let evenness = METRICS[sweep / SWEEPS_OF_A_METRIC % METRICS.len()];
             self.sweep_positions(state, inverse_masses, evenness);
             std::mem::swap(&mut self.now, &mut self.later);
             if self.now.is_empty() {
@@ -209,7 +220,7 @@ impl Project {
     }
 
     /// Takes the marked edges outward; marks for later those farther in that a move has touched.
-    fn sweep_positions(&mut self, state: &mut State, inverse_masses: &[f64], evenness: f64) {
+    fn sweep_positions(&mut self, state: &mut State, inverse_masses: &[f64], evenness: Evenness) {
         let mut rank = 0;
         while let Some(next) = self.now.take_from(rank) {
             rank = next;
@@ -218,7 +229,12 @@ impl Project {
                 continue;
             }
             let [near, far] = [edge.near, edge.far].map(|end| (self.base + end) as usize);
-            let edge = Edge { nearness: edge.nearness.powf(1.0 - evenness), ..edge };
+            let nearness = match evenness {
+                Evenness::Outward => edge.nearness,
+                Evenness::Between => edge.nearness.sqrt(),
+                Evenness::Even => 1.0,
+            };
+            let edge = Edge { nearness, ..edge };
             let Some([give_near, give_far]) = shares(&edge, near, far, inverse_masses) else {
                 continue;
             };

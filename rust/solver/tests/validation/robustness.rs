@@ -160,8 +160,8 @@ impl Hands {
 }
 
 /// Frames in random wind, with new springs every quarter of a thousand. The promise is asked for while the pins are
-/// within a part of their reach.
-fn abuse(side: u32, frames: usize, part_of_reach: f64) {
+/// within their reach.
+fn abuse(side: u32, frames: usize) {
     let mut dice = Dice(0);
     let mut cloth = sheet(side, limited(RATE), &mut dice);
     let mut hands = Hands::new(cloth.cloth(0));
@@ -184,7 +184,7 @@ fn abuse(side: u32, frames: usize, part_of_reach: f64) {
         let distance = hands.distance();
         if distance > REACH {
             out_of_reach += 1;
-        } else if over > PROMISE && distance <= part_of_reach * REACH {
+        } else if over > PROMISE {
             broken.push((frame, distance, over));
         }
     }
@@ -195,21 +195,13 @@ fn abuse(side: u32, frames: usize, part_of_reach: f64) {
 
 #[test]
 fn in_ten_thousand_frames_of_abuse_a_sheet_is_never_lost_and_keeps_its_promise() {
-    abuse(8, 10_000, 0.95);
-}
-
-/// A known fault: with the pins at 99.8 to 99.98 % of their reach the limiter stops, in four frames of ten thousand,
-/// at up to 0.17 points over the rate, where 0.1 are promised.
-#[test]
-#[ignore = "fails: the promise is broken by up to 0.07 points where the pins all but draw the sheet straight"]
-fn a_sheet_keeps_its_promise_up_to_the_full_reach_of_its_pins() {
-    abuse(8, 10_000, 1.0);
+    abuse(8, 10_000);
 }
 
 #[test]
 #[ignore = "minutes: cargo test --release -- --ignored finer_sheet"]
 fn in_ten_thousand_frames_of_abuse_a_finer_sheet_is_never_lost_and_keeps_its_promise() {
-    abuse(16, 10_000, 0.95);
+    abuse(16, 10_000);
 }
 
 /// Pins at up to 20 m/s that turn back every other frame, in a gale, on three materials: never lost.

@@ -26,7 +26,7 @@ const SCALE: f64 = 0.1;
 const PIN_SCALE: f64 = 10.0;
 
 /// Fewer steps are taken only if this part of them would do.
-const CLEARLY: f64 = 0.75;
+const CLEARLY: f64 = 0.9;
 
 /// A frame is done once more if it should have had so many times its steps: with fewer, BDF2 loses twice the energy when
 /// a swinging sheet snaps taut.

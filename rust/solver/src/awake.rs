@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use rayon::{Yield, current_num_threads, current_thread_index, yield_now};
 
 /// Looks for work before a core is offered to other programs.
-const LOOKS: u32 = 64;
+const LOOKS: u32 = 16;
 
 /// Pauses between two looks.
 const PAUSES: u32 = 16;
@@ -20,7 +20,8 @@ pub(crate) fn with_others_awake<R: Send>(others: usize, work: impl FnOnce() -> R
     let own = current_thread_index();
     rayon::in_place_scope(|scope| {
         for _ in 0..others.min(current_num_threads().saturating_sub(1)) {
-            // A thread that waits for others may come by its own request: it must not wait for itself.
+            // A thread that waits inside its work must not come by a request and wait for itself. The own thread is known;
+            // others take requests before work, because these were the first to be spawned.
             scope.spawn(|_| {
                 if current_thread_index() != own {
                     look_for_work(&is_done);

@@ -105,7 +105,8 @@ pub struct Settings {
     pub integrator: IntegratorKind,
     /// How a frame is cut into steps.
     pub step_size: StepSize,
-    /// What an implicit integrator may be off in a step, relative to the cloths' size, where `Auto` picks the steps.
+    /// How exact an implicit integrator is where `Auto` picks the steps: ten times what a step may be off, relative to the
+    /// cloths' size.
     pub tolerance: f64,
     /// What inverts the constant matrix of an implicit step.
     pub linear_solver: LinearSolver,

@@ -93,7 +93,7 @@ impl Simulation {
             good: state.clone(),
             good_memory: None,
             frame: settings.first_frame,
-            accuracy: Accuracy { tolerance: settings.tolerance, size: plan::size_of(&state) },
+            accuracy: Accuracy { tolerance: settings.tolerance, size: plan::size_of(&cloths) },
             substeps_taken: 0,
             iterations_taken: 0,
             cloths,
@@ -178,7 +178,7 @@ impl Simulation {
         let mut substeps = self.plan()?;
         self.keep();
         let mut lost = self.run(substeps, false);
-        if let (None, Some(more)) = (lost, self.plan_again(substeps)) {
+        if let Some(more) = self.plan_again(substeps) {
             self.fall_back();
             substeps = more;
             lost = self.run(substeps, false);
@@ -210,6 +210,7 @@ impl Simulation {
 
     /// Returns to the state that was kept.
     fn fall_back(&mut self) {
+        self.method.take_iterations();
         self.state.copy_from(&self.good);
         if let (Some(memory), Some(good)) = (self.method.memory_mut(), &self.good_memory) {
             memory.copy_from(good);

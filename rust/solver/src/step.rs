@@ -41,21 +41,22 @@ impl Step<'_> {
                 }
             }
             Method::Implicit(implicit) => {
-                let mut hold = |state: &mut State, most_sweeps| {
+                let mut hold = |state: &mut State, most_sweeps, is_again: bool| {
+                    let limits = limits.iter_mut().filter(|limit| !is_again || limit.promises());
                     let is_held =
                         |limit: &mut Limit| limit.hold(state, inverse_masses, self.h, most_sweeps);
-                    limits.iter_mut().map(is_held).fold(true, |all, held| all & held)
+                    limits.map(is_held).fold(true, |all, held| all & held)
                 };
                 if !self.is_last {
-                    hold(state, SWEEPS);
+                    hold(state, SWEEPS, false);
                     return;
                 }
-                let mut is_held = hold(state, SWEEPS_AT_END);
+                let mut is_held = hold(state, SWEEPS_AT_END, false);
                 for _ in 0..PULLS {
                     if is_held || !implicit.pull(self.system, state) {
                         break;
                     }
-                    is_held = hold(state, SWEEPS_AFTER_PULL);
+                    is_held = hold(state, SWEEPS_AFTER_PULL, true);
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! Edges that no limiter can hold one by one, pulled to their allowed length all at once.
 
+use super::Implicit;
 use super::taut::WithTaut;
-use super::{Implicit, inertia};
 use crate::linear::{Field, Operator, Stop};
 use crate::state::State;
 use crate::system::System;
@@ -76,8 +76,8 @@ impl Implicit {
             last = excess;
             self.pull_once(system);
         }
-        let inertia = |particle: usize| inertia(system, &self.air, particle, self.memory.step);
-        let shifts = self.pieces.shifts(&self.still.position, &self.pulling.moved, inertia);
+        let mass = |particle: usize| system.masses[particle];
+        let shifts = self.pieces.shifts(&self.still.position, &self.pulling.moved, mass);
         for (axis, positions) in state.position.0.iter_mut().enumerate() {
             for (particle, (x, pulled)) in
                 positions.iter_mut().zip(&*self.at.position.0[axis]).enumerate()

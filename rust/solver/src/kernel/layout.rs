@@ -110,7 +110,7 @@ impl Layout {
         layout
     }
 
-    /// Where springs between these pairs of particles are; none for pairs that no spring joins.
+    /// Where springs between these pairs of particles are, other than bend springs; none for pairs that none joins.
     pub(crate) fn places(
         &self,
         pairs: impl IntoIterator<Item = [u32; 2]>,
@@ -126,7 +126,7 @@ impl Layout {
             let (gather, lane) = gathered[own as usize]?;
             let slot = gather.slots.clone().find(|&slot| {
                 let slot = &self.gather_slots[slot];
-                slot.neighbors[lane] == other && slot.rest_lengths[lane] > 0.0
+                slot.neighbors[lane] == other && slot.rest_lengths[lane] > 0.0 && !slot.is_bend
             });
             Some((slot? as u32, lane as u32))
         };
@@ -135,7 +135,8 @@ impl Layout {
             let diagonal = self.diagonals.iter().position(|diagonal| {
                 let springs = first.checked_sub(diagonal.first);
                 let rest_length = springs.and_then(|spring| diagonal.rest_lengths.get(spring));
-                diagonal.offset == offset && rest_length.is_some_and(|length| *length > 0.0)
+                let joins = rest_length.is_some_and(|length| *length > 0.0);
+                joins && diagonal.offset == offset && !diagonal.is_bend
             });
             if let Some(diagonal) = diagonal {
                 let spring = first - self.diagonals[diagonal].first;

@@ -39,6 +39,11 @@ impl Limit {
         }
     }
 
+    /// Whether it is to hold its edges, whatever it takes.
+    pub(crate) fn promises(&self) -> bool {
+        matches!(self, Self::Project(_))
+    }
+
     /// Moves ends that are too far apart after an implicit step, which has already held them as well as it can, in so
     /// many sweeps at the most, and says whether all are held now.
     pub(crate) fn hold(

@@ -11,7 +11,7 @@
 //!
 //! At the end of a frame, what is left is projected away. Edges are taken outward from the pins, and the end nearer
 //! to a pin gives way the less, by a factor of ten for each edge that it is nearer: one sweep then carries a whole
-//! hanging cloth. All moves of a sweep are projections onto convex sets in one metric (a weight a particle). An edge that a move has made too long again is taken again, in the same sweep if
+//! hanging cloth. An edge that a move has made too long again is taken again, in the same sweep if
 //! it lies farther out. Of the velocity, the ends of moved edges lose only the part by which they separate: the whole
 //! move over the step would pump energy.
 //!
@@ -31,7 +31,7 @@ const LEAST_RATE: f64 = 0.01;
 /// Sweeps inward and outward after each step.
 const SWEEPS: usize = 2;
 
-/// Sweeps at the end of a frame: a hanging sheet takes 3 to 20, more are of use only where pins force the strain.
+/// Sweeps at the end of a frame of explicit steps: a hanging sheet takes 3 to 20.
 const SWEEPS_AT_END: usize = 480;
 
 /// Sweeps before the metric changes. Where a hanging chain has to swing aside to reach, its near ends must give way

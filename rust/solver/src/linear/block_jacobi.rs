@@ -81,17 +81,19 @@ impl WithSimd for Invert<'_> {
         for i in 0..count {
             // Rounding must not take a pivot below the part that is on the diagonal alone.
             let least = self.least[i];
-            let moves = if least > 0.0 { 1.0 } else { 0.0 };
+            let moves = least > 0.0;
             let least = least.max(f32::MIN_POSITIVE);
-            let x = moves / xx[i].max(least).sqrt();
+            let x = 1.0 / xx[i].max(least).sqrt();
             let (lyx, lzx) = (yx[i] * x, zx[i] * x);
-            let y = moves / (yy[i] - lyx * lyx).max(least).sqrt();
+            let y = 1.0 / (yy[i] - lyx * lyx).max(least).sqrt();
             let lzy = (zy[i] - lzx * lyx) * y;
-            let z = moves / (zz[i] - lzx * lzx - lzy * lzy).max(least).sqrt();
+            let z = 1.0 / (zz[i] - lzx * lzx - lzy * lzy).max(least).sqrt();
             let inverse_yx = -lyx * x * y;
             let inverse_zx = -(lzx * x + lzy * inverse_yx) * z;
-            [xx[i], yx[i], yy[i]] = [x, inverse_yx, y];
-            [zx[i], zy[i], zz[i]] = [inverse_zx, -lzy * y * z, z];
+            let roots = [x, inverse_yx, y, inverse_zx, -lzy * y * z, z];
+            let [x, yx_root, y, zx_root, zy_root, z] = if moves { roots } else { [0.0; 6] };
+            [xx[i], yx[i], yy[i]] = [x, yx_root, y];
+            [zx[i], zy[i], zz[i]] = [zx_root, zy_root, z];
         }
     }
 }

@@ -99,12 +99,8 @@ impl ConjugateGradient {
         for iteration in 0..stop.most_iterations {
             inverse.apply_inverse(residual, preconditioned);
             let rz = dot(residual, preconditioned, partial);
-            if rz.is_nan() {
-                // What is lost must be seen to be lost.
-                for axis in &mut solution.0 {
-                    axis.fill(f32::NAN);
-                }
-                return Solved { iterations: iteration + 1, gained: f64::NAN };
+            if !rz.is_finite() {
+                return lost(solution, iteration);
             }
             if rz <= 0.0 {
                 return Solved { iterations: iteration, gained: *gained - before };
@@ -117,7 +113,10 @@ impl ConjugateGradient {
             last = rz;
             operator.apply(direction, product);
             let curvature = dot(direction, product, partial);
-            if !(curvature > 0.0) {
+            if !curvature.is_finite() {
+                return lost(solution, iteration);
+            }
+            if curvature <= 0.0 {
                 return Solved { iterations: iteration, gained: *gained - before };
             }
             let step = rz / curvature;
@@ -132,6 +131,14 @@ impl ConjugateGradient {
         }
         Solved { iterations: stop.most_iterations, gained: *gained - before }
     }
+}
+
+/// What is lost must be seen to be lost.
+fn lost(solution: &mut Field, iteration: u32) -> Solved {
+    for axis in &mut solution.0 {
+        axis.fill(f32::NAN);
+    }
+    Solved { iterations: iteration + 1, gained: f64::NAN }
 }
 
 /// `aᵀ b`.

@@ -2,8 +2,7 @@
 
 use rayon::prelude::*;
 
-/// Particles that one task handles.
-pub(crate) const CHUNK: usize = 2048;
+pub(crate) use crate::kernel::CHUNK;
 
 /// Single precision, an array an axis.
 #[derive(Clone, Debug, Default)]

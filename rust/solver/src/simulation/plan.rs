@@ -1,13 +1,15 @@
 //! How many steps the next frame takes.
 
+use boucle_geometry::Vector;
+
 use super::Simulation;
 use crate::certificate::length;
+use crate::cloth::Cloth;
 use crate::error::{Error, Result};
 use crate::integrator::explicit;
 use crate::limit::Limit;
 use crate::settings::{MOST_SUBSTEPS, StepSize};
 use crate::stability::stiffening;
-use crate::state::State;
 use crate::system::System;
 
 /// How much of the largest stable step `auto` takes.
@@ -33,7 +35,7 @@ impl Simulation {
         spectrum.largest_step(rule, self.frame_duration())
     }
 
-    /// Steps that the next frame takes; 0 if there is no stable number.
+    /// Steps that the next frame begins with; 0 if there is no stable number.
     #[must_use]
     pub fn substeps(&self) -> u32 {
         self.plan().unwrap_or(0)
@@ -101,12 +103,13 @@ impl Simulation {
     }
 }
 
-/// Root mean square distance (m) of the particles from their middle.
-pub(super) fn size_of(state: &State) -> f64 {
-    let count = state.len() as f64;
-    let spreads = state.position.0.iter().map(|axis| {
-        let middle = axis.iter().sum::<f64>() / count;
-        axis.iter().map(|x| (x - middle) * (x - middle)).sum::<f64>() / count
+/// Root mean square distance (m) of the particles from the middle of their cloth.
+pub(super) fn size_of(cloths: &[Cloth]) -> f64 {
+    let squares = cloths.iter().map(|cloth| {
+        let count = cloth.positions.len().max(1) as f64;
+        let middle = cloth.positions.iter().sum::<Vector>() / count;
+        cloth.positions.iter().map(|x| (x - middle).norm_squared()).sum::<f64>()
     });
-    spreads.sum::<f64>().sqrt().max(f64::MIN_POSITIVE)
+    let count: usize = cloths.iter().map(|cloth| cloth.positions.len()).sum();
+    (squares.sum::<f64>() / count.max(1) as f64).sqrt().max(f64::MIN_POSITIVE)
 }

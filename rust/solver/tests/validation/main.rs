@@ -25,4 +25,5 @@ mod scenes;
 mod sheets;
 mod stability;
 mod statics;
+mod swing;
 mod wind;

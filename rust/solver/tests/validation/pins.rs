@@ -3,6 +3,7 @@
 use boucle_geometry::Vector;
 use boucle_solver::{Cloth, IntegratorKind, Limiter, Mass, Settings, SpringMaterial};
 
+use crate::lying::{self, Hung, lying_sheet};
 use crate::sheets::{classic, farthest, material, network, run, sheet, simulation};
 
 fn curtain(limiter: Limiter) -> Cloth {
@@ -90,4 +91,24 @@ fn pins_move_in_a_straight_line_at_constant_speed_within_a_frame() {
     run(&mut simulation, 1);
     let expected = 1.0 + 0.02 * (0.5 - (10.0_f64 * 0.5).sin() / 10.0);
     assert!((simulation.positions(0)[1].x - expected).abs() < 1e-11);
+}
+
+/// A curtain gathered to one point: springs between pins that coincide have no direction, and take none.
+#[test]
+fn pins_may_meet_in_one_point() {
+    for integrator in [IntegratorKind::ImplicitEuler, IntegratorKind::Bdf2] {
+        let material =
+            SpringMaterial { stiffness: [1000.0, 200.0, 10.0], ..SpringMaterial::default() };
+        let side = 12;
+        let mut curtain =
+            simulation(lying_sheet(side, Hung::Edge, material), lying::settings(integrator));
+        let place = curtain.positions(0)[(side * side - side) as usize];
+        for frame in 0..24 {
+            curtain.set_pin_targets(0, &vec![place; (side * side) as usize]);
+            let certificate = curtain.advance().expect("a frame");
+            assert!(certificate.kinetic_energy.is_finite(), "frame {frame}");
+        }
+        let positions = curtain.positions(0);
+        assert!(positions[(side * side - side) as usize..].iter().all(|pin| *pin == place));
+    }
 }

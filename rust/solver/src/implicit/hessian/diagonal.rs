@@ -67,7 +67,7 @@ impl Springs<'_> {
         );
     }
 
-    /// Of springs by the particles that they begin at, both ends, which must be further apart than the width of a vector.
+    /// Of springs by the particles that they begin at, both ends, which must be at least the width of a vector apart.
     #[inline(always)]
     fn add_both_ends<S: Simd, const SUBTRACT: bool>(
         &self,

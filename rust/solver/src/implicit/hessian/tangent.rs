@@ -47,8 +47,10 @@ fn tangent<const STIFFENS: bool>(
     }
     let along = stiffness * slope + damped[0] * damping;
     let across = stiffness * tension + damped[1] * damping;
-    let scale = is_spring * along.sqrt() * by_length;
-    [scale * x, scale * y, scale * z, is_spring * across]
+    // Ends that coincide have no direction: zeros, before anything large is multiplied.
+    let [x, y, z] = [x * by_length, y * by_length, z * by_length];
+    let root = is_spring * along.sqrt();
+    [root * x, root * y, root * z, is_spring * across]
 }
 
 /// The larger of two numbers, as one instruction.

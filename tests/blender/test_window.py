@@ -97,10 +97,12 @@ def bake_in_a_window():
     threads = set()
     core = addon("core.bake")
     real = core.Step.run
+    polled = threading.Event()
 
     def run(step):
         if step.frame > 1:  # the rest pose is only read
             threads.add(threading.current_thread().name)
+            polled.wait(30.0)  # else the bake could end before the first event
         real(step)
 
     core.Step.run = run
@@ -109,6 +111,7 @@ def bake_in_a_window():
     first = baking.modal(context, Event("TIMER"))
     if first == {"RUNNING_MODAL"}:
         polls.append(bpy.ops.boucle.bake.poll() or "bake" not in runtime.busy)
+    polled.set()
     state, _ = run_to_the_end(baking, context)
     core.Step.run = real
     bpy.context.scene.frame_set(40)

@@ -83,11 +83,11 @@ fn pieces() -> (Vec<Vector>, Vec<[u32; 2]>) {
     for (number, (columns, rows)) in [(20, 20), (1, 1), (9, 31), (40, 1), (1, 1)].iter().enumerate()
     {
         let base = positions.len() as u32;
-        let (points, joined) = grid(*columns, *rows);
+        let (points, linked) = grid(*columns, *rows);
         // The second and third lie among each other.
         let shift = Vector::new(7.0 * number as f64, 0.5, 0.0);
         positions.extend(points.iter().map(|point| point + shift));
-        pairs.extend(joined.iter().map(|pair| pair.map(|end| base + end)));
+        pairs.extend(linked.iter().map(|pair| pair.map(|end| base + end)));
     }
     (positions, pairs)
 }

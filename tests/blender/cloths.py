@@ -23,6 +23,19 @@ def add_cloth(columns=8, rows=6, end=20, **values):
     return obj
 
 
+def add_diverging_cloth():
+    """A cloth whose springs are far too stiff for its step."""
+    return add_cloth(
+        integrator="symplectic_euler",
+        stretch=1e6,
+        shear=1e6,
+        limiter="none",
+        substeps=1,
+        allow_unstable=True,
+        damping=0.0,
+    )
+
+
 def play(first, last):
     """Go through frames one by one, as the play button does."""
     for frame in range(first, last + 1):

@@ -334,17 +334,9 @@ def test_what_cannot_be_simulated_is_refused_in_one_sentence_with_its_culprits(b
 
 def diverge():
     import bpy
-    from cloths import add_cloth, refusal_of, shown_positions
+    from cloths import add_diverging_cloth, refusal_of, shown_positions
 
-    obj = add_cloth(
-        integrator="symplectic_euler",
-        stretch=1e6,
-        shear=1e6,
-        limiter="none",
-        substeps=1,
-        allow_unstable=True,
-        damping=0.0,
-    )
+    obj = add_diverging_cloth()
     said = refusal_of(bpy.ops.boucle.bake)
     status = obj.boucle.status
     bpy.context.scene.frame_set(2)

@@ -3,7 +3,7 @@
 use boucle_geometry::Vector;
 
 use crate::cloth::{Cloth, placed};
-use crate::linear::{Field, Graph, Inverse, Laplacian, Ldlt, Multigrid, Operator};
+use crate::linear::{Forward, Graph, Inverse, Laplacian, Ldlt, Multigrid};
 use crate::material::SpringKind;
 use crate::settings::LinearSolver;
 use crate::system::System;
@@ -16,6 +16,15 @@ const MOST_EXACT: usize = 400_000;
 enum Kind {
     Exact(Ldlt),
     Cycle(Multigrid),
+}
+
+impl Kind {
+    fn as_inverse(&mut self) -> &mut dyn Inverse {
+        match self {
+            Self::Exact(ldlt) => ldlt,
+            Self::Cycle(cycle) => cycle,
+        }
+    }
 }
 
 /// P on the springs along edges and across faces. Bend springs are left to H: the factor is half as large without.
@@ -70,28 +79,25 @@ impl Preconditioner {
             LinearSolver::Multigrid => false,
         };
         let Self { inverse, graph, positions, matrix, pairs, .. } = self;
-        match inverse {
-            Some(_) if is_fresh => {}
-            Some(Kind::Exact(ldlt)) => ldlt.refactor(graph, matrix),
-            _ if is_exact => *inverse = Some(Kind::Exact(Ldlt::new(graph, positions, matrix))),
+        let kind = match inverse.take() {
+            Some(kind) if is_fresh => kind,
+            Some(Kind::Exact(mut ldlt)) => {
+                ldlt.refactor(graph, matrix);
+                Kind::Exact(ldlt)
+            }
+            _ if is_exact => Kind::Exact(Ldlt::new(graph, positions, matrix)),
             _ => {
                 let is_pinned = |particle: usize| system.is_pinned(particle);
-                *inverse = Some(Kind::Cycle(Multigrid::new(pairs, matrix, positions, is_pinned)));
+                Kind::Cycle(Multigrid::new(pairs, matrix, positions, is_pinned))
             }
-        }
-        self.both().0
+        };
+        inverse.insert(kind).as_inverse()
     }
 
-    /// The inverse of the last step, and the matrix itself.
-    pub(super) fn both(&mut self) -> (&mut dyn Inverse, Forward<'_>) {
-        let Self { inverse, graph, positions, matrix, .. } = self;
-        let inverse =
-            inverse.get_or_insert_with(|| Kind::Exact(Ldlt::new(graph, positions, matrix)));
-        let inverse: &mut dyn Inverse = match inverse {
-            Kind::Exact(ldlt) => ldlt,
-            Kind::Cycle(cycle) => cycle,
-        };
-        (inverse, Forward { graph, matrix })
+    /// The inverse of the last step, if there was one, and the matrix itself.
+    pub(super) fn both(&mut self) -> Option<(&mut dyn Inverse, Forward<'_>)> {
+        let Self { inverse, graph, matrix, .. } = self;
+        Some((inverse.as_mut()?.as_inverse(), Forward { graph, matrix }))
     }
 
     /// Factors anew at the next step: pins have changed.
@@ -107,18 +113,5 @@ impl Preconditioner {
         Laplacian::new(&self.pairs, weights.collect(), diagonal.collect(), |particle| {
             system.is_pinned(particle)
         })
-    }
-}
-
-/// The product with P itself.
-#[derive(Clone, Copy)]
-pub(super) struct Forward<'a> {
-    graph: &'a Graph,
-    matrix: &'a Laplacian,
-}
-
-impl Operator for Forward<'_> {
-    fn apply(&self, p: &Field, out: &mut Field) {
-        self.matrix.multiply(self.graph, p, out);
     }
 }

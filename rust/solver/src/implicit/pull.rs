@@ -43,9 +43,7 @@ impl Scratch {
 
     fn clear(&mut self) {
         self.tensions.fill(0.0);
-        for axis in &mut self.moved.0 {
-            axis.fill(0.0);
-        }
+        self.moved.fill(0.0);
     }
 }
 
@@ -93,7 +91,7 @@ impl Implicit {
     fn pull_once(&mut self, system: &System) {
         let Self { taut, gradients, preconditioner, at, residual, base, pulling, .. } = self;
         let Scratch { tensions, moved, product } = pulling;
-        let (inverse, matrix) = preconditioner.both();
+        let Some((inverse, matrix)) = preconditioner.both() else { return };
         matrix.apply(moved, product);
         for (out, product) in residual.position.0.iter_mut().zip(&product.0) {
             for (i, (out, product)) in out.iter_mut().zip(product).enumerate() {

@@ -91,54 +91,54 @@ impl ConjugateGradient {
         stop: Stop,
     ) -> Solved {
         let Self { residual, solution, preconditioned, direction, product, partial, gained } = self;
-        for axis in &mut solution.0 {
-            axis.fill(0.0);
-        }
+        solution.fill(0.0);
         let before = *gained;
         let mut last = f64::INFINITY;
-        for iteration in 0..stop.most_iterations {
+        let mut iterations = 0;
+        while iterations < stop.most_iterations {
             inverse.apply_inverse(residual, preconditioned);
             let rz = dot(residual, preconditioned, partial);
             if !rz.is_finite() {
-                return lost(solution, iteration);
+                return lost(solution, iterations);
             }
             if rz <= 0.0 {
-                return Solved { iterations: iteration, gained: *gained - before };
+                break;
             }
-            if iteration == 0 {
+            if iterations == 0 {
                 direction.copy_from(preconditioned);
             } else {
-                scale_and_add(direction, (rz / last) as f32, preconditioned);
+                let keep = (rz / last) as f32;
+                direction.update(preconditioned, |d, z| *d = keep * *d + z);
             }
             last = rz;
             operator.apply(direction, product);
             let curvature = dot(direction, product, partial);
             if !curvature.is_finite() {
-                return lost(solution, iteration);
+                return lost(solution, iterations);
             }
             if curvature <= 0.0 {
-                return Solved { iterations: iteration, gained: *gained - before };
+                break;
             }
-            let step = rz / curvature;
-            add_scaled(solution, step as f32, direction);
-            add_scaled(residual, -step as f32, product);
-            let gain = step * rz;
+            let length = rz / curvature;
+            let step = length as f32;
+            solution.update(direction, |x, d| *x += step * d);
+            residual.update(product, |r, hd| *r += -step * hd);
+            iterations += 1;
+            let gain = length * rz;
             *gained += gain;
             let is_done = gain <= stop.tolerance * stop.tolerance * *gained;
-            if is_done && iteration + 1 >= stop.least_iterations {
-                return Solved { iterations: iteration + 1, gained: *gained - before };
+            if is_done && iterations >= stop.least_iterations {
+                break;
             }
         }
-        Solved { iterations: stop.most_iterations, gained: *gained - before }
+        Solved { iterations, gained: *gained - before }
     }
 }
 
 /// What is lost must be seen to be lost.
-fn lost(solution: &mut Field, iteration: u32) -> Solved {
-    for axis in &mut solution.0 {
-        axis.fill(f32::NAN);
-    }
-    Solved { iterations: iteration + 1, gained: f64::NAN }
+fn lost(solution: &mut Field, iterations: u32) -> Solved {
+    solution.fill(f32::NAN);
+    Solved { iterations: iterations + 1, gained: f64::NAN }
 }
 
 /// `aᵀ b`.
@@ -164,24 +164,4 @@ fn dot_of(a: &[f32], b: &[f32]) -> f64 {
     }
     let rest: f32 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
     sums.iter().map(|&sum| f64::from(sum)).sum::<f64>() + f64::from(rest)
-}
-
-/// `to += factor from`.
-fn add_scaled(to: &mut Field, factor: f32, from: &Field) {
-    each_chunk(to, from, |to, from| *to += factor * from);
-}
-
-/// `to = factor to + from`.
-fn scale_and_add(to: &mut Field, factor: f32, from: &Field) {
-    each_chunk(to, from, |to, from| *to = factor * *to + from);
-}
-
-fn each_chunk(to: &mut Field, from: &Field, update: impl Fn(&mut f32, f32) + Sync) {
-    to.chunks_mut().zip(from.chunks()).for_each(|(to, from)| {
-        for (to, from) in to.into_iter().zip(from) {
-            for (to, &from) in to.iter_mut().zip(from) {
-                update(to, from);
-            }
-        }
-    });
 }

@@ -31,12 +31,18 @@ impl Field {
         (x, y, z).into_par_iter().map(|(x, y, z)| [x, y, z])
     }
 
-    /// Adds another.
-    pub(crate) fn add(&mut self, other: &Self) {
+    pub(crate) fn fill(&mut self, number: f32) {
+        for axis in &mut self.0 {
+            axis.fill(number);
+        }
+    }
+
+    /// Changes each number by that of another field in its place.
+    pub(crate) fn update(&mut self, other: &Self, change: impl Fn(&mut f32, f32) + Sync) {
         self.chunks_mut().zip(other.chunks()).for_each(|(own, other)| {
             for (own, other) in own.into_iter().zip(other) {
-                for (own, other) in own.iter_mut().zip(other) {
-                    *own += other;
+                for (own, &other) in own.iter_mut().zip(other) {
+                    change(own, other);
                 }
             }
         });

@@ -11,6 +11,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::conjugate_gradient::Operator;
 use super::field::Field;
 
 /// Rows that one task multiplies at the least.
@@ -118,5 +119,18 @@ impl Laplacian {
         let pairs = &graph.pairs[entries.clone()];
         let weights = pairs.iter().map(|&pair| self.weights[pair as usize]);
         graph.neighbors[entries].iter().copied().zip(weights)
+    }
+}
+
+/// The product with a matrix on its graph.
+#[derive(Clone, Copy)]
+pub(crate) struct Forward<'a> {
+    pub(crate) graph: &'a Graph,
+    pub(crate) matrix: &'a Laplacian,
+}
+
+impl Operator for Forward<'_> {
+    fn apply(&self, p: &Field, out: &mut Field) {
+        self.matrix.multiply(self.graph, p, out);
     }
 }

@@ -16,6 +16,6 @@ mod problems;
 pub(crate) use block_jacobi::{BlockJacobi, Entries, LARGEST};
 pub(crate) use conjugate_gradient::{ConjugateGradient, Inverse, Operator, Solved, Stop};
 pub(crate) use field::Field;
-pub(crate) use laplacian::{Graph, Laplacian};
+pub(crate) use laplacian::{Forward, Graph, Laplacian};
 pub(crate) use ldlt::Ldlt;
 pub(crate) use multigrid::Multigrid;

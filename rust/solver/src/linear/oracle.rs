@@ -7,7 +7,7 @@ use sprs::{CsMat, TriMat};
 use sprs_ldl::Ldl;
 
 use super::problems::{grid, matrix};
-use super::{ConjugateGradient, Field, Graph, Inverse, Laplacian, Ldlt, Multigrid, Operator, Stop};
+use super::{ConjugateGradient, Field, Forward, Graph, Inverse, Laplacian, Ldlt, Multigrid, Stop};
 use crate::scatter::scattered;
 use crate::state::State;
 
@@ -200,14 +200,6 @@ fn a_solve_agrees_with_the_sparse_elimination_of_another_program() {
     }
 }
 
-struct Matrix<'a>(&'a Graph, &'a Laplacian);
-
-impl Operator for Matrix<'_> {
-    fn apply(&self, p: &Field, out: &mut Field) {
-        self.1.multiply(self.0, p, out);
-    }
-}
-
 /// Conjugate gradients in f32 settle at the rounding of the matrix times its condition: each round of them takes up
 /// what the one before left, in f64.
 const ROUNDS: usize = 4;
@@ -233,7 +225,8 @@ fn a_solve_agrees_with_conjugate_gradients_behind_a_multigrid_cycle() {
                 to.copy_from_slice(from);
             }
             gradients.take_residual(&right.position);
-            let solved = gradients.solve(&Matrix(&graph, &matrix), &mut cycle, stop);
+            let solved =
+                gradients.solve(&Forward { graph: &graph, matrix: &matrix }, &mut cycle, stop);
             assert!(solved.iterations < stop.most_iterations, "{side}², {pins:?}");
             add(&mut solution, &gradients.solution);
         }

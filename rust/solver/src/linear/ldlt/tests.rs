@@ -1,6 +1,7 @@
 use nalgebra::{DMatrix, DVector};
 
-use super::super::conjugate_gradient::{ConjugateGradient, Operator, Stop};
+use super::super::conjugate_gradient::{ConjugateGradient, Stop};
+use super::super::laplacian::Forward;
 use super::super::problems::{grid, matrix};
 use super::*;
 use crate::scatter::scattered;
@@ -141,14 +142,6 @@ fn a_solve_of_many_tasks_leaves_little_and_gives_the_same_bits_on_any_number_of_
     }
 }
 
-struct Matrix<'a>(&'a Graph, &'a Laplacian);
-
-impl Operator for Matrix<'_> {
-    fn apply(&self, p: &Field, out: &mut Field) {
-        self.1.multiply(self.0, p, out);
-    }
-}
-
 /// The inverse in f64.
 struct Exact(DMatrix<f64>);
 
@@ -189,7 +182,9 @@ fn conjugate_gradients_need_as_many_iterations_as_with_the_exact_inverse() {
                 let mut gradients = ConjugateGradient::new(count);
                 gradients.take_residual(&state.position);
                 let stop = Stop { tolerance, least_iterations: 0, most_iterations: 100 };
-                gradients.solve(&Matrix(&graph, &other), inverse, stop).iterations
+                gradients
+                    .solve(&Forward { graph: &graph, matrix: &other }, inverse, stop)
+                    .iterations
             };
             let exact = iterations(&mut Exact(inverse.clone()));
             let rounded = iterations(&mut ldlt);

@@ -1,16 +1,9 @@
-use super::super::conjugate_gradient::{ConjugateGradient, Operator, Stop};
+use super::super::conjugate_gradient::{ConjugateGradient, Stop};
+use super::super::laplacian::Forward;
 use super::super::problems::{grid, matrix};
 use super::*;
 use crate::scatter::scattered;
 use crate::state::State;
-
-struct Matrix<'a>(&'a Graph, &'a Laplacian);
-
-impl Operator for Matrix<'_> {
-    fn apply(&self, p: &Field, out: &mut Field) {
-        self.1.multiply(self.0, p, out);
-    }
-}
 
 fn noise(count: usize, seed: u64) -> State {
     let mut state = State::zeros(count);
@@ -54,7 +47,8 @@ fn iterations(side: u32, pins: &[usize]) -> (u32, f64) {
     gradients.start();
     gradients.take_residual(&right.position);
     let stop = Stop { tolerance: 1e-3, least_iterations: 0, most_iterations: 300 };
-    let taken = gradients.solve(&Matrix(&graph, &matrix), &mut cycle, stop).iterations;
+    let taken =
+        gradients.solve(&Forward { graph: &graph, matrix: &matrix }, &mut cycle, stop).iterations;
     let errors = gradients.solution.0[0].iter().zip(&x.0[0]).map(|(a, b)| f64::from(a - b));
     let error = errors.map(|error| error * error).sum::<f64>().sqrt();
     (taken, error / f64::from(side))

@@ -23,8 +23,13 @@ pub struct Certificate {
     pub p99_strain: f64,
     /// Largest elongation over shear springs.
     pub max_shear_strain: f64,
-    /// Vertices whose motion was cut short by contact; 0 without contact.
+    /// Intersections of edges with triangles, exactly: cloths with themselves, with each other and with colliders, as far
+    /// as they collide; `None` if nothing does.
+    pub intersections: Option<u64>,
+    /// Vertices whose motion was cut short by contact, once for each step.
     pub clipped: u32,
+    /// Contacts at the end of the frame.
+    pub contacts: u32,
     /// Kinetic energy (J).
     pub kinetic_energy: f64,
     /// Energy of springs and of height (J).
@@ -51,7 +56,9 @@ pub(crate) fn certify<'a>(
         max_strain: stretch.iter().copied().fold(f64::NEG_INFINITY, f64::max).max(-1.0),
         p99_strain: percentile(&mut stretch, 0.99),
         max_shear_strain: shear.iter().copied().fold(f64::NEG_INFINITY, f64::max).max(-1.0),
+        intersections: None,
         clipped: 0,
+        contacts: 0,
         kinetic_energy,
         potential_energy,
         hash: hash(state),

@@ -2,6 +2,7 @@
 
 use boucle_geometry::{Mesh, Vector};
 
+use crate::collision::Collision;
 use crate::error::{Error, Result, bad_mesh};
 use crate::law::{Spring, springs_of_mesh};
 use crate::material::SpringMaterial;
@@ -37,6 +38,8 @@ pub struct Cloth {
     pub pins: Vec<u32>,
     /// Air damping, damping law, deformation rate and limiter; the springs hold their own stiffness.
     pub material: SpringMaterial,
+    /// How it collides; not at all if `None`.
+    pub collision: Option<Collision>,
 }
 
 /// A cloth and the number of its first particle.
@@ -52,7 +55,7 @@ pub(crate) fn placed(cloths: &[Cloth]) -> impl Iterator<Item = Placed<'_>> + Clo
 }
 
 impl Cloth {
-    /// A cloth with the springs and masses that its mesh gives it.
+    /// A cloth with the springs and masses that its mesh gives it, which collides with nothing.
     ///
     /// # Errors
     /// When the mesh, a position (m), the mass or the material is not accepted.
@@ -77,8 +80,8 @@ impl Cloth {
         }
         let masses = masses_of(name, &mesh, &positions, mass)?;
         let springs = springs_of_mesh(&mesh, &positions, &material);
-        let cloth =
-            Self { name: name.to_owned(), mesh, positions, springs, masses, pins, material };
+        let (name, collision) = (name.to_owned(), None);
+        let cloth = Self { name, mesh, positions, springs, masses, pins, material, collision };
         cloth.check()?;
         Ok(cloth)
     }

@@ -27,6 +27,13 @@ pub enum Error {
         /// What is wrong and what would be accepted.
         reason: String,
     },
+    /// A collider that cloth cannot collide with.
+    BadCollider {
+        /// The collider's name.
+        collider: String,
+        /// What is wrong and what would be accepted.
+        reason: String,
+    },
     /// A step beyond what the springs bear.
     Unstable {
         /// The step asked for (s).
@@ -67,6 +74,9 @@ impl fmt::Display for Error {
                 write!(f, "{quantity} is {value}; accepted: {domain}")
             }
             Self::BadCloth { cloth, reason } => write!(f, "cloth \"{cloth}\": {reason}"),
+            Self::BadCollider { collider, reason } => {
+                write!(f, "collider \"{collider}\": {reason}")
+            }
             Self::Unstable { step, bound, substeps } if *bound > 0.0 => write!(
                 f,
                 "the step of {step:.3e} s is beyond the stability bound of {bound:.3e} s; accepted: \

@@ -15,6 +15,8 @@ mod awake;
 mod certificate;
 mod checkpoint;
 mod cloth;
+mod collider;
+mod collision;
 mod digest;
 mod error;
 mod force;
@@ -40,6 +42,8 @@ mod system;
 
 pub use certificate::Certificate;
 pub use cloth::{Cloth, Mass, mesh_of};
+pub use collider::{Collider, Shape};
+pub use collision::Collision;
 pub use error::{Error, Result};
 pub use force::{Region, Wind, WindLaw};
 pub use law::{Spring, springs_of_mesh};

@@ -11,6 +11,7 @@ use crate::awake::with_others_awake;
 use crate::certificate::{Certificate, certify, length};
 use crate::checkpoint::Checkpoint;
 use crate::cloth::{Cloth, FARTHEST, placed};
+use crate::collider::Collider;
 use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::force::Wind;
@@ -32,6 +33,7 @@ use crate::system::System;
 /// Cloths in motion, at the end of a frame.
 pub struct Simulation {
     cloths: Vec<Cloth>,
+    colliders: Vec<Collider>,
     /// First particle of each cloth.
     bases: Vec<u32>,
     settings: Settings,
@@ -66,10 +68,29 @@ impl Simulation {
     /// # Errors
     /// When a cloth, a wind or a setting is not accepted, or no allowed number of substeps is stable.
     pub fn new(cloths: Vec<Cloth>, winds: Vec<Wind>, settings: Settings) -> Result<Self> {
+        Self::with_colliders(cloths, Vec::new(), winds, settings)
+    }
+
+    /// A simulation at its first frame, at rest, among colliders.
+    ///
+    /// # Errors
+    /// When a cloth, a collider, a wind or a setting is not accepted, or no allowed number of substeps is stable.
+    pub fn with_colliders(
+        cloths: Vec<Cloth>,
+        colliders: Vec<Collider>,
+        winds: Vec<Wind>,
+        settings: Settings,
+    ) -> Result<Self> {
         settings.check()?;
         cloths.iter().try_for_each(Cloth::check)?;
+        colliders.iter().try_for_each(Collider::check)?;
+        for cloth in &cloths {
+            if let Some(collision) = &cloth.collision {
+                collision.check(&cloth.name, cloth.positions.len(), colliders.len())?;
+            }
+        }
         winds.iter().try_for_each(|wind| wind.check(&cloths))?;
-        let digest = digest(&cloths, &winds, &settings);
+        let digest = digest(&cloths, &colliders, &winds, &settings);
         let bases: Vec<u32> = placed(&cloths).map(|(_, base)| base).collect();
         let positions: Vec<Vector> =
             cloths.iter().flat_map(|cloth| cloth.positions.iter().copied()).collect();
@@ -97,6 +118,7 @@ impl Simulation {
             substeps_taken: 0,
             iterations_taken: 0,
             cloths,
+            colliders,
             bases,
             settings,
             digest,
@@ -137,6 +159,30 @@ impl Simulation {
             let vertex = particle.checked_sub(base)?;
             targets.get(vertex as usize).copied()
         });
+    }
+
+    /// How many colliders there are.
+    #[must_use]
+    pub fn collider_count(&self) -> usize {
+        self.colliders.len()
+    }
+
+    /// A collider as it was given.
+    ///
+    /// # Panics
+    /// When there is no collider of this number; so does [`Self::set_collider_targets`].
+    #[must_use]
+    pub fn collider(&self, collider: usize) -> &Collider {
+        &self.colliders[collider]
+    }
+
+    /// Where the points of a collider are to be at the end of the next frame (m). They move there in straight lines, and
+    /// rest there until they are told anew.
+    ///
+    /// # Errors
+    /// [`Error::BadCollider`] when there are not as many as it has, or one is no place in space.
+    pub fn set_collider_targets(&mut self, collider: usize, targets: &[Vector]) -> Result<()> {
+        self.colliders[collider].check_positions(targets)
     }
 
     /// Lets pins go, with the velocity they have.

@@ -1,0 +1,79 @@
+//! How a cloth touches: itself, other cloths, colliders.
+
+use crate::error::{Error, Result};
+
+/// How one cloth collides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Collision {
+    /// Whether it collides with itself.
+    pub with_self: bool,
+    /// Its radius (m): two cloths keep the sum of theirs between them.
+    pub thickness: f64,
+    /// Coefficient of friction; that of a pair is the geometric mean of both.
+    pub friction: f64,
+    /// Vertices that do not collide with their own cloth.
+    pub excluded_from_self: Vec<u32>,
+    /// Vertices that do not collide with colliders.
+    pub excluded_from_colliders: Vec<u32>,
+    /// The colliders that it meets, by number; all if `None`.
+    pub colliders: Option<Vec<u32>>,
+}
+
+impl Default for Collision {
+    fn default() -> Self {
+        Self {
+            with_self: true,
+            thickness: 0.002,
+            friction: 0.3,
+            excluded_from_self: Vec::new(),
+            excluded_from_colliders: Vec::new(),
+            colliders: None,
+        }
+    }
+}
+
+/// Largest thickness (m) and coefficient of friction that are taken.
+pub(crate) const THICKEST: f64 = 100.0;
+const ROUGHEST: f64 = 100.0;
+
+impl Collision {
+    /// Refuses values outside their domains, for a cloth of a name and so many vertices among so many colliders.
+    pub(crate) fn check(&self, cloth: &str, vertices: usize, colliders: usize) -> Result<()> {
+        let owner = format!("cloth \"{cloth}\"");
+        check_number(&owner, "thickness (m)", self.thickness, self.thickness > 0.0)?;
+        check_number(&owner, "friction", self.friction, self.friction >= 0.0)?;
+        let refuse = |what: &str, number: u32, count: usize| {
+            let reason = format!("{what} {number} is not there; accepted: below {count}");
+            Err(Error::BadCloth { cloth: cloth.to_owned(), reason })
+        };
+        let excluded = self.excluded_from_self.iter().chain(&self.excluded_from_colliders);
+        for &vertex in excluded {
+            if vertex as usize >= vertices {
+                return refuse("excluded vertex", vertex, vertices);
+            }
+        }
+        for &collider in self.colliders.iter().flatten() {
+            if collider as usize >= colliders {
+                return refuse("collider", collider, colliders);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a thickness or a coefficient of friction beyond its domain.
+pub(crate) fn check_number(
+    owner: &str,
+    what: &str,
+    value: f64,
+    is_large_enough: bool,
+) -> Result<()> {
+    let (most, domain) = match what {
+        "friction" => (ROUGHEST, "0 to 100"),
+        _ => (THICKEST, "above 0, at most 100"),
+    };
+    if is_large_enough && value <= most {
+        return Ok(());
+    }
+    Err(Error::OutOfDomain { quantity: format!("{owner}: {what}"), value, domain })
+}

@@ -1,0 +1,62 @@
+//! Straight ways of all points over a step: where they start, and how far they go.
+
+use boucle_geometry::Vector;
+
+use crate::state::Coordinates;
+
+/// The ways of all points.
+#[derive(Clone, Debug)]
+pub(super) struct Paths {
+    /// m.
+    pub(super) start: Vec<Vector>,
+    /// m.
+    pub(super) step: Vec<Vector>,
+}
+
+impl Paths {
+    pub(super) fn at_rest(points: &[Vector]) -> Self {
+        Self { start: points.to_vec(), step: vec![Vector::zeros(); points.len()] }
+    }
+
+    /// Where a point ends (m).
+    #[inline]
+    pub(super) fn end(&self, point: u32) -> Vector {
+        self.start[point as usize] + self.step[point as usize]
+    }
+
+    /// Starts particles at these positions (m).
+    pub(super) fn set_starts(&mut self, positions: &Coordinates) {
+        let [x, y, z] = positions.0.each_ref();
+        for (((start, x), y), z) in self.start.iter_mut().zip(x.iter()).zip(y.iter()).zip(z.iter())
+        {
+            *start = Vector::new(*x, *y, *z);
+        }
+    }
+
+    /// Sends particles to these positions (m).
+    pub(super) fn set_ends(&mut self, positions: &Coordinates) {
+        let [x, y, z] = positions.0.each_ref();
+        let points = self.step.iter_mut().zip(&self.start);
+        for ((((step, start), x), y), z) in points.zip(x.iter()).zip(y.iter()).zip(z.iter()) {
+            *step = Vector::new(*x, *y, *z) - start;
+        }
+    }
+
+    /// Whether boxes around two features may come within `reach` (m) of each other on the way.
+    #[inline]
+    pub(super) fn may_meet(&self, first: &[u32], second: &[u32], reach: f64) -> bool {
+        let least = |points: &[u32], of: &[Vector], axis: usize| {
+            points.iter().fold(f64::INFINITY, |least, &point| least.min(of[point as usize][axis]))
+        };
+        let most = |points: &[u32], of: &[Vector], axis: usize| {
+            points.iter().fold(f64::NEG_INFINITY, |most, &point| most.max(of[point as usize][axis]))
+        };
+        (0..3).all(|axis| {
+            let apart = |one: &[u32], other: &[u32]| {
+                least(one, &self.start, axis) - most(other, &self.start, axis)
+                    + (least(one, &self.step, axis) - most(other, &self.step, axis)).min(0.0)
+            };
+            apart(first, second) <= reach && apart(second, first) <= reach
+        })
+    }
+}

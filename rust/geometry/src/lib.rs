@@ -1,10 +1,18 @@
-//! Pure geometry: meshes and boxes. No physics, no files.
+//! Pure geometry: meshes, boxes, distances, intersections. No physics, no files.
 
 mod aabb;
+pub mod distance;
+mod intersection;
 mod mesh;
+mod winding;
 
 pub use aabb::Aabb;
+pub use intersection::{Meeting, edge_crosses_triangle, edge_meets_triangle};
 pub use mesh::{Mesh, MeshError};
+pub use winding::is_inside;
+
+#[cfg(test)]
+mod scatter;
 
 /// A point (m), a direction, or a velocity (m/s).
 pub type Vector = nalgebra::Vector3<f64>;

@@ -1,12 +1,20 @@
-//! Pure geometry: meshes, boxes, and which things come near each other. No physics, no files.
+//! Pure geometry: meshes, boxes, which things come near each other, distances, intersections. No physics, no files.
 
 mod aabb;
 mod bvh;
+pub mod distance;
+mod intersection;
 mod mesh;
+mod winding;
 
 pub use aabb::Aabb;
 pub use bvh::{Bvh, Sweep};
+pub use intersection::{Meeting, edge_crosses_triangle, edge_meets_triangle};
 pub use mesh::{Mesh, MeshError};
+pub use winding::is_inside;
+
+#[cfg(test)]
+mod scatter;
 
 /// A point (m), a direction, or a velocity (m/s).
 pub type Vector = nalgebra::Vector3<f64>;

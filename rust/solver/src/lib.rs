@@ -17,6 +17,7 @@ mod checkpoint;
 mod cloth;
 mod collider;
 mod collision;
+mod contact;
 mod digest;
 mod error;
 mod force;

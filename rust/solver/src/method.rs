@@ -1,6 +1,7 @@
 //! What moves the particles by a step: a rule that needs nothing but the state, or one that remembers.
 
 use crate::cloth::Cloth;
+use crate::contact::Contacts;
 use crate::implicit::{Implicit, Memory, Rule};
 use crate::integrator::{Integrator, Scratch, explicit};
 use crate::settings::{IntegratorKind, Settings};
@@ -67,10 +68,16 @@ impl Method {
     }
 
     /// Moves `state` by one step of h seconds.
-    pub(crate) fn step(&mut self, system: &System, state: &mut State, h: f64) {
+    pub(crate) fn step(
+        &mut self,
+        system: &System,
+        state: &mut State,
+        contacts: &mut Contacts,
+        h: f64,
+    ) {
         match self {
             Self::Explicit(rule, scratch) => rule.step(system, state, scratch, h),
-            Self::Implicit(implicit) => implicit.step(system, state, h),
+            Self::Implicit(implicit) => implicit.step(system, state, contacts, h),
         }
     }
 }

@@ -12,6 +12,7 @@ use crate::certificate::{Certificate, certify, length};
 use crate::checkpoint::Checkpoint;
 use crate::cloth::{Cloth, FARTHEST, placed};
 use crate::collider::Collider;
+use crate::contact::Contacts;
 use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::force::Wind;
@@ -41,6 +42,7 @@ pub struct Simulation {
     spectrum: Spectrum,
     digest: u64,
     pins: Pins,
+    contacts: Contacts,
     limits: Vec<Limit>,
     state: State,
     /// The state at the start of a frame, to fall back on.
@@ -53,6 +55,10 @@ pub struct Simulation {
     substeps_taken: u32,
     /// Iterations of the linear solver in those.
     iterations_taken: u32,
+    /// Vertices cut short in those.
+    clipped: u32,
+    /// Of the present state, if anything can touch.
+    intersections: Option<u64>,
     threads: ThreadPool,
 }
 
@@ -110,6 +116,7 @@ impl Simulation {
             method: Method::new(&settings, &cloths, &system, &state),
             system,
             spectrum: Spectrum::default(),
+            contacts: Contacts::new(&cloths, &colliders),
             limits: Vec::new(),
             good: state.clone(),
             good_memory: None,
@@ -117,6 +124,8 @@ impl Simulation {
             accuracy: Accuracy { tolerance: settings.tolerance, size: plan::size_of(&cloths) },
             substeps_taken: 0,
             iterations_taken: 0,
+            clipped: 0,
+            intersections: None,
             cloths,
             colliders,
             bases,
@@ -126,6 +135,7 @@ impl Simulation {
             threads,
         };
         simulation.follow_pins();
+        simulation.intersect();
         simulation.plan()?;
         Ok(simulation)
     }
@@ -182,7 +192,10 @@ impl Simulation {
     /// # Errors
     /// [`Error::BadCollider`] when there are not as many as it has, or one is no place in space.
     pub fn set_collider_targets(&mut self, collider: usize, targets: &[Vector]) -> Result<()> {
-        self.colliders[collider].check_positions(targets)
+        self.colliders[collider].check_positions(targets)?;
+        let before = self.colliders[..collider].iter().map(|collider| collider.positions.len());
+        self.contacts.aim(before.sum(), targets);
+        Ok(())
     }
 
     /// Lets pins go, with the velocity they have.
@@ -237,6 +250,9 @@ impl Simulation {
             return Err(self.diverged(first));
         }
         self.frame += 1;
+        self.contacts.end_frame();
+        self.clipped = self.contacts.take_clipped();
+        self.intersect();
         self.substeps_taken = substeps;
         if let Some(memory) = self.method.memory_mut() {
             memory.substeps = self.accuracy.after(substeps, memory.mean_error(substeps));
@@ -257,6 +273,7 @@ impl Simulation {
     /// Returns to the state that was kept.
     fn fall_back(&mut self) {
         self.method.take_iterations();
+        self.contacts.take_clipped();
         self.state.copy_from(&self.good);
         if let (Some(memory), Some(good)) = (self.method.memory_mut(), &self.good_memory) {
             memory.copy_from(good);
@@ -272,15 +289,15 @@ impl Simulation {
             perturb(&mut self.state, &self.cloths, self.settings.perturbation);
         }
         self.pins.start(&mut self.state, duration);
-        let Self { system, pins, limits, state, method, threads, .. } = self;
+        let Self { system, pins, contacts, limits, state, method, threads, .. } = self;
         // No pass has work for more.
         let others = state.len() / CHUNK;
         threads.install(|| {
             with_others_awake(others, || {
                 (1..=substeps).find_map(|substep| {
-                    let is_last = substep == substeps;
-                    Step { system, pins, h, is_last }.run(state, method, limits);
-                    if watches || is_last { first_lost(state) } else { None }
+                    let step = Step { system, pins, h, number: substep, count: substeps };
+                    step.run(state, method, contacts, limits);
+                    if watches || substep == substeps { first_lost(state) } else { None }
                 })
             })
         })
@@ -301,7 +318,13 @@ impl Simulation {
         let cloths = self.cloths.iter().zip(self.bases.iter().copied());
         let certificate =
             certify(cloths, &self.state, &self.settings.gravity, self.frame, self.substeps_taken);
-        Certificate { iterations: self.iterations_taken, ..certificate }
+        Certificate {
+            iterations: self.iterations_taken,
+            intersections: self.intersections,
+            clipped: self.clipped,
+            contacts: self.contacts.count(),
+            ..certificate
+        }
     }
 
     /// Positions (m) of a cloth's vertices, world space.
@@ -386,7 +409,17 @@ impl Simulation {
         let pinned = checkpoint.is_pinned.iter().enumerate().filter(|&(_, &is_pinned)| is_pinned);
         self.pins = Pins::new(pinned.map(|(particle, _)| particle as u32), &self.state);
         self.follow_pins();
+        self.intersect();
         Ok(())
+    }
+
+    /// Counts the intersections of the present state.
+    fn intersect(&mut self) {
+        let Self { contacts, state, threads, .. } = self;
+        if !contacts.is_empty() {
+            let count = threads.install(|| contacts.intersections(&state.position));
+            self.intersections = Some(count);
+        }
     }
 
     fn frame_duration(&self) -> f64 {
@@ -408,6 +441,7 @@ impl Simulation {
             self.system.set_pinned(particle as usize, true);
         }
         self.method.follow_pins(&self.system);
+        self.contacts.follow_pins(&self.system.inverse_masses);
         let placed = self.cloths.iter().zip(&self.bases);
         let inverse_masses = &self.system.inverse_masses;
         self.limits =

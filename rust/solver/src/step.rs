@@ -1,5 +1,7 @@
 //! One substep: a table of contents.
 
+use crate::contact::Contacts;
+use crate::implicit::Implicit;
 use crate::limit::Limit;
 use crate::method::Method;
 use crate::pins::Pins;
@@ -16,49 +18,102 @@ const SWEEPS_AT_END: usize = 2000;
 const PULLS: usize = 4;
 const SWEEPS_AFTER_PULL: usize = 480;
 
+/// How often limiters and contacts take turns at the end of a frame, until both hold.
+const TURNS: usize = 8;
+
 /// What a substep works with.
 pub(crate) struct Step<'a> {
     pub(crate) system: &'a System,
     pub(crate) pins: &'a Pins,
     /// Length (s).
     pub(crate) h: f64,
-    /// Whether it ends a frame.
-    pub(crate) is_last: bool,
+    /// Its number in its frame, from 1, and how many there are.
+    pub(crate) number: u32,
+    pub(crate) count: u32,
 }
 
 impl Step<'_> {
     /// Moves the state by one substep.
-    pub(crate) fn run(&self, state: &mut State, method: &mut Method, limits: &mut [Limit]) {
-        method.step(self.system, state, self.h);
-        if self.is_last {
+    pub(crate) fn run(
+        &self,
+        state: &mut State,
+        method: &mut Method,
+        contacts: &mut Contacts,
+        limits: &mut [Limit],
+    ) {
+        let is_last = self.number == self.count;
+        contacts.start_step(self.number, self.count, &state.position);
+        method.step(self.system, state, contacts, self.h);
+        if is_last {
             self.pins.arrive(state);
         }
-        let inverse_masses = &self.system.inverse_masses;
+        let mut is_held = self.limit(state, method, limits, is_last);
+        if contacts.is_empty() {
+            return;
+        }
+        let mut clipped = contacts.truncate(&mut state.position);
+        if !is_last {
+            return;
+        }
+        for _ in 0..TURNS {
+            if clipped == 0 && is_held {
+                break;
+            }
+            contacts.start_again(&state.position);
+            is_held = self.hold(state, limits, SWEEPS_AFTER_PULL, true);
+            clipped = contacts.truncate(&mut state.position);
+        }
+    }
+
+    /// Limits strain after the method's step, and says whether all edges are held.
+    fn limit(
+        &self,
+        state: &mut State,
+        method: &mut Method,
+        limits: &mut [Limit],
+        is_last: bool,
+    ) -> bool {
         match method {
             Method::Explicit(..) => {
                 for limit in limits {
-                    limit.apply(state, inverse_masses, self.h, self.is_last);
+                    limit.apply(state, &self.system.inverse_masses, self.h, is_last);
                 }
+                true
             }
-            Method::Implicit(implicit) => {
-                let mut hold = |state: &mut State, most_sweeps, is_again: bool| {
-                    let limits = limits.iter_mut().filter(|limit| !is_again || limit.promises());
-                    let is_held =
-                        |limit: &mut Limit| limit.hold(state, inverse_masses, self.h, most_sweeps);
-                    limits.map(is_held).fold(true, |all, held| all & held)
-                };
-                if !self.is_last {
-                    hold(state, SWEEPS, false);
-                    return;
-                }
-                let mut is_held = hold(state, SWEEPS_AT_END, false);
-                for _ in 0..PULLS {
-                    if is_held || !implicit.pull(self.system, state) {
-                        break;
-                    }
-                    is_held = hold(state, SWEEPS_AFTER_PULL, true);
-                }
-            }
+            Method::Implicit(_) if !is_last => self.hold(state, limits, SWEEPS, false),
+            Method::Implicit(implicit) => self.hold_at_end(state, implicit, limits),
         }
+    }
+
+    /// Holds all edges at the end of a frame, as far as that is possible.
+    fn hold_at_end(
+        &self,
+        state: &mut State,
+        implicit: &mut Implicit,
+        limits: &mut [Limit],
+    ) -> bool {
+        let mut is_held = self.hold(state, limits, SWEEPS_AT_END, false);
+        for _ in 0..PULLS {
+            if is_held || !implicit.pull(self.system, state) {
+                break;
+            }
+            is_held = self.hold(state, limits, SWEEPS_AFTER_PULL, true);
+        }
+        is_held
+    }
+
+    /// Applies the limiters; `is_again` those only that promise to hold their edges.
+    fn hold(
+        &self,
+        state: &mut State,
+        limits: &mut [Limit],
+        most_sweeps: usize,
+        is_again: bool,
+    ) -> bool {
+        let limits = limits.iter_mut().filter(|limit| !is_again || limit.promises());
+        let is_held = |limit: &mut Limit| {
+            limit.hold(state, &self.system.inverse_masses, self.h, most_sweeps)
+        };
+        limits.map(is_held).fold(true, |all, held| all & held)
     }
 }

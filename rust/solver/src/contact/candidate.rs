@@ -1,6 +1,7 @@
 //! Candidates: a point and a triangle, or two edges, that may meet on their way.
 
-use boucle_geometry::{Closest, Vector, edge_edge, point_triangle};
+use boucle_geometry::Vector;
+use boucle_geometry::distance::{Closest, edge_edge, point_triangle};
 
 use super::bodies::{Bodies, Patch};
 use super::paths::Paths;

@@ -11,11 +11,26 @@ pub(super) struct Paths {
     pub(super) start: Vec<Vector>,
     /// m.
     pub(super) step: Vec<Vector>,
+    /// Which points can go another way: neither pinned nor a collider's.
+    is_free: Vec<bool>,
 }
 
 impl Paths {
     pub(super) fn at_rest(points: &[Vector]) -> Self {
-        Self { start: points.to_vec(), step: vec![Vector::zeros(); points.len()] }
+        let (start, step) = (points.to_vec(), vec![Vector::zeros(); points.len()]);
+        Self { start, step, is_free: vec![false; points.len()] }
+    }
+
+    /// Takes over which particles are pinned.
+    pub(super) fn follow_pins(&mut self, inverse_masses: &[f64]) {
+        for (is_free, inverse) in self.is_free.iter_mut().zip(inverse_masses) {
+            *is_free = *inverse > 0.0;
+        }
+    }
+
+    #[inline]
+    pub(super) fn is_free(&self, point: u32) -> bool {
+        self.is_free[point as usize]
     }
 
     /// Where a point ends (m).

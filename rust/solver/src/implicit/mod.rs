@@ -34,10 +34,11 @@ mod taut;
 mod tests;
 
 use crate::cloth::{Cloth, placed};
+use crate::contact::Contacts;
 use crate::force::AirScratch;
 use crate::linear::{BlockJacobi, ConjugateGradient, Solved, Stop};
 use crate::settings::LinearSolver;
-use crate::state::State;
+use crate::state::{Coordinates, State};
 use crate::system::{Motion, Rate, System};
 use hessian::Hessian;
 use history::Formula;
@@ -66,6 +67,14 @@ const STOP: Stop = Stop { tolerance: 0.06, least_iterations: 1, most_iterations:
 /// No more Newton iterations once one gains no more than the square of this part of all.
 const LEFT: f64 = 0.2;
 
+/// Iterations of Newton in contact: friction needs the pressure of one before it.
+const LEAST_IN_CONTACT: usize = 3;
+const MOST_IN_CONTACT: usize = 6;
+
+/// How often a step is taken up again where it was cut short, if more than one in so many particles were.
+const ROUNDS: usize = 3;
+const MANY: usize = 1000;
+
 /// An implicit integrator and all that it keeps between steps.
 #[derive(Debug)]
 pub(crate) struct Implicit {
@@ -86,6 +95,8 @@ pub(crate) struct Implicit {
     at: State,
     /// What forces leave at the guess, in the place of positions, and accelerations in that of velocities.
     residual: State,
+    /// Where the ways to the guess lead that are cut short.
+    reached: Coordinates,
     /// Zeros.
     still: State,
     air: AirScratch,
@@ -119,6 +130,7 @@ impl Implicit {
             base: State::zeros(count),
             at: State::zeros(count),
             residual: State::zeros(count),
+            reached: State::zeros(count).position,
             still: State::zeros(count),
             air: AirScratch::default(),
             iterations: 0,
@@ -131,29 +143,77 @@ impl Implicit {
         self.pieces.follow_pins(|particle| system.is_pinned(particle));
     }
 
-    /// Moves `state` by one step of h seconds.
-    pub(crate) fn step(&mut self, system: &System, state: &mut State, h: f64) {
+    /// Moves `state` by one step of h seconds, among contacts that were told of the step.
+    pub(crate) fn step(
+        &mut self,
+        system: &System,
+        state: &mut State,
+        contacts: &mut Contacts,
+        h: f64,
+    ) {
         let formula = self.formula(h);
         self.predict(system, state, formula, h);
-        self.gradients.start();
-        let mut gained = 0.0;
-        for _ in 0..NEWTON {
-            self.linearize(system, formula.step);
-            let solved = self.solve(system, formula.step);
-            self.iterations += solved.iterations;
-            if solved.iterations == 0 {
-                break;
-            }
-            self.correct(system, formula.step);
-            gained += solved.gained;
-            if solved.gained <= LEFT * LEFT * gained {
-                break;
-            }
+        if contacts.is_empty() {
+            self.approach(system, contacts, formula.step, h);
+        } else {
+            self.approach_and_touch(system, contacts, formula.step, h);
         }
         self.memory.error += self.error(state, h);
         self.memory.before.copy_from(state);
         self.memory.step = h;
         state.copy_from(&self.at);
+    }
+
+    /// Newton's iterations from the present guess.
+    fn approach(&mut self, system: &System, contacts: &mut Contacts, step: f64, h: f64) {
+        let least = if contacts.count() > 0 { LEAST_IN_CONTACT } else { 1 };
+        let most = if contacts.count() > 0 { MOST_IN_CONTACT } else { NEWTON };
+        self.gradients.start();
+        let mut gained = 0.0;
+        for iteration in 1..=most {
+            self.linearize(system, contacts, step, h);
+            let solved = self.solve(system, contacts, step);
+            self.iterations += solved.iterations;
+            if solved.iterations == 0 {
+                break;
+            }
+            self.correct(system, contacts, step);
+            contacts.press(&self.gradients.solution);
+            gained += solved.gained;
+            if iteration >= least && solved.gained <= LEFT * LEFT * gained {
+                break;
+            }
+        }
+    }
+
+    /// The same among contacts: what is cut short goes on from there, among the contacts that it then has.
+    fn approach_and_touch(&mut self, system: &System, contacts: &mut Contacts, step: f64, h: f64) {
+        for round in 1..=ROUNDS {
+            contacts.detect(&self.at.position, &system.inverse_masses, step);
+            self.approach(system, contacts, step, h);
+            self.reached.copy_from(&self.at.position);
+            let clipped = contacts.truncate(&mut self.reached);
+            if round == ROUNDS || clipped as usize * MANY <= system.particle_count() {
+                break;
+            }
+            contacts.start_again(&self.reached);
+        }
+        self.take_reached(step);
+    }
+
+    /// Moves the guess to where the cut ways lead.
+    fn take_reached(&mut self, h: f64) {
+        for (axis, reached) in self.reached.0.iter().enumerate() {
+            let position = self.at.position.0[axis].iter_mut();
+            let velocity = self.at.velocity.0[axis].iter_mut();
+            let base = self.base.position.0[axis].iter();
+            for (((x, v), reached), base) in position.zip(velocity).zip(reached.iter()).zip(base) {
+                if *x != *reached {
+                    *x = *reached;
+                    *v = (*x - base) / h;
+                }
+            }
+        }
     }
 
     fn formula(&self, h: f64) -> Formula {
@@ -194,7 +254,7 @@ impl Implicit {
     }
 
     /// Takes the residual and the tangents at the present guess.
-    fn linearize(&mut self, system: &System, h: f64) {
+    fn linearize(&mut self, system: &System, contacts: &mut Contacts, h: f64, whole: f64) {
         let Self {
             base, at, residual, still, air, hessian, blocks, taut, gradients, memory, ..
         } = self;
@@ -213,30 +273,32 @@ impl Implicit {
         }
         taut.freeze(&at.position, &memory.tensions, 1.0, system);
         taut.add_forces(&mut residual.position);
+        contacts.push(&at.position, &mut residual.position, whole);
         gradients.take_residual(&residual.position);
         for (i, inertia) in hessian.inertia.iter_mut().enumerate() {
             *inertia = self::inertia(system, air, i, h) as f32;
         }
         hessian.freeze(&system.layout, &at.position, h);
         hessian.tauten(taut.pulling());
-        hessian.invert_blocks(&system.layout, blocks);
+        hessian.invert_blocks(&system.layout, &contacts.matrix, blocks);
     }
 
     /// Solves for the move from the present guess.
-    fn solve(&mut self, system: &System, h: f64) -> Solved {
+    fn solve(&mut self, system: &System, contacts: &Contacts, h: f64) -> Solved {
         let Self { preconditioner, hessian, blocks, scratch, gradients, .. } = self;
-        let matrix = &hessian.without_bends(&system.layout);
+        let matrix = &hessian.without_bends(&system.layout, &contacts.matrix);
         let inverse = preconditioner.inverse(system, h);
-        let operator = &hessian.on(&system.layout);
+        let operator = &hessian.on(&system.layout, &contacts.matrix);
         gradients.solve(operator, &mut Smoothed { matrix, blocks, inverse, scratch }, STOP)
     }
 
     /// Moves the guess by the solution.
-    fn correct(&mut self, system: &System, h: f64) {
+    fn correct(&mut self, system: &System, contacts: &Contacts, h: f64) {
         let solution = &self.gradients.solution;
         self.taut.follow(solution, &mut self.memory.tensions);
         let inertia = |particle: usize| inertia(system, &self.air, particle, h);
-        let shifts = self.pieces.shifts(&self.residual.position, solution, inertia);
+        let touched = contacts.matrix.particles();
+        let shifts = self.pieces.shifts(&self.residual.position, solution, inertia, touched);
         for axis in 0..3 {
             let position = self.at.position.0[axis].iter_mut();
             let velocity = self.at.velocity.0[axis].iter_mut();

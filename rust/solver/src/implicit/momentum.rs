@@ -54,14 +54,19 @@ impl Pieces {
     }
 
     /// The shift (m) of each particle that makes up for the rounding of moves, given what they were to balance and
-    /// the inertia (kg/s²) of each; none if no piece is free.
+    /// the inertia (kg/s²) of each, and which particles are touched from outside; none if no piece is free.
     pub(super) fn shifts(
         &self,
         residual: &Coordinates,
         moves: &Field,
         inertia: impl Fn(usize) -> f64,
+        touched: &[u32],
     ) -> Option<Shifts<'_>> {
-        if !self.is_free.contains(&true) {
+        let mut is_free = self.is_free.clone();
+        for &particle in touched {
+            is_free[self.piece_of[particle as usize] as usize] = false;
+        }
+        if !is_free.contains(&true) {
             return None;
         }
         let mut sums = vec![[0.0; 4]; self.is_free.len()];
@@ -74,7 +79,7 @@ impl Pieces {
                 *sum += residual[particle] - weight * f64::from(moves[particle]);
             }
         }
-        let of_piece = sums.iter().zip(&self.is_free).map(|(&[x, y, z, weight], &is_free)| {
+        let of_piece = sums.iter().zip(is_free).map(|(&[x, y, z, weight], is_free)| {
             if is_free && weight > 0.0 { [x, y, z].map(|sum| sum / weight) } else { [0.0; 3] }
         });
         Some(Shifts { piece_of: &self.piece_of, of_piece: of_piece.collect() })
@@ -126,7 +131,7 @@ mod tests {
             moves.0[1][i] = 0.1 * i as f32;
         }
         let inertia = |particle: usize| 2.0 + particle as f64;
-        let shifts = pieces.shifts(&state.position, &moves, inertia).expect("a free piece");
+        let shifts = pieces.shifts(&state.position, &moves, inertia, &[]).expect("a free piece");
         assert!(shifts.of(1).iter().all(|shift| shift.to_bits() == 0));
         let balance: f64 = [0, 2, 3, 4]
             .iter()
@@ -137,6 +142,6 @@ mod tests {
             .sum();
         assert!(balance.abs() < 1e-12, "{balance}");
         pieces.follow_pins(|particle| particle >= 4);
-        assert!(pieces.shifts(&state.position, &moves, inertia).is_none());
+        assert!(pieces.shifts(&state.position, &moves, inertia, &[]).is_none());
     }
 }

@@ -75,7 +75,7 @@ impl Implicit {
             self.pull_once(system);
         }
         let mass = |particle: usize| system.masses[particle];
-        let shifts = self.pieces.shifts(&self.still.position, &self.pulling.moved, mass);
+        let shifts = self.pieces.shifts(&self.still.position, &self.pulling.moved, mass, &[]);
         for (axis, positions) in state.position.0.iter_mut().enumerate() {
             for (particle, (x, pulled)) in
                 positions.iter_mut().zip(&*self.at.position.0[axis]).enumerate()

@@ -5,14 +5,22 @@ use std::ops::Range;
 use pulp::{Simd, WithSimd};
 
 use super::Hessian;
+use crate::contact::ContactMatrix;
 use crate::kernel::{CHUNK, Layout};
 use crate::linear::{BlockJacobi, Entries};
 
 impl Hessian {
     /// Inverts the blocks on the diagonal.
-    pub(in crate::implicit) fn invert_blocks(&self, layout: &Layout, inverse: &mut BlockJacobi) {
-        inverse.invert(&self.inertia, |first, blocks| {
-            self.arch.dispatch(Blocks { hessian: self, layout, first, entries: blocks });
+    pub(in crate::implicit) fn invert_blocks(
+        &self,
+        layout: &Layout,
+        contacts: &ContactMatrix,
+        inverse: &mut BlockJacobi,
+    ) {
+        inverse.invert(&self.inertia, |first, mut blocks| {
+            let entries = blocks.each_mut().map(|entries| &mut **entries);
+            self.arch.dispatch(Blocks { hessian: self, layout, first, entries });
+            contacts.add_blocks(first, &mut blocks);
         });
     }
 }

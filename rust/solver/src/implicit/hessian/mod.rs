@@ -29,6 +29,7 @@ use pulp::Arch;
 use rayon::prelude::*;
 
 use super::taut::Pulling;
+use crate::contact::ContactMatrix;
 use crate::kernel::{CHUNK, GATHERED, Layout, Place};
 use crate::state::Coordinates;
 pub(super) use product::Product;
@@ -118,13 +119,17 @@ impl Hessian {
         }
     }
 
-    /// The product with H on the springs of a layout.
-    pub(super) fn on<'a>(&'a self, layout: &'a Layout) -> Product<'a> {
-        Product { hessian: self, layout, has_bends: true }
+    /// The product with H on the springs of a layout and on contacts.
+    pub(super) fn on<'a>(&'a self, layout: &'a Layout, contacts: &'a ContactMatrix) -> Product<'a> {
+        Product { hessian: self, layout, contacts, has_bends: true }
     }
 
     /// The same without bend springs: what smoothing works with. They are soft, and a third of the work.
-    pub(super) fn without_bends<'a>(&'a self, layout: &'a Layout) -> Product<'a> {
-        Product { hessian: self, layout, has_bends: false }
+    pub(super) fn without_bends<'a>(
+        &'a self,
+        layout: &'a Layout,
+        contacts: &'a ContactMatrix,
+    ) -> Product<'a> {
+        Product { hessian: self, layout, contacts, has_bends: false }
     }
 }

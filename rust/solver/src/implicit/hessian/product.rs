@@ -5,13 +5,15 @@ use rayon::prelude::*;
 
 use super::Hessian;
 use super::diagonal::Springs;
+use crate::contact::ContactMatrix;
 use crate::kernel::{CHUNK, GATHERED, Layout};
 use crate::linear::{Field, Operator};
 
-/// The matrix with the layout that says where its springs are.
+/// The matrix with the layout that says where its springs are, and with the contacts.
 pub(in crate::implicit) struct Product<'a> {
     pub(super) hessian: &'a Hessian,
     pub(super) layout: &'a Layout,
+    pub(super) contacts: &'a ContactMatrix,
     pub(super) has_bends: bool,
 }
 
@@ -26,6 +28,7 @@ impl Product<'_> {
         out.chunks_mut().enumerate().for_each(|(chunk, out)| {
             arch.dispatch(Rows::<SUBTRACT> { product: self, p, first: chunk * CHUNK, out });
         });
+        self.contacts.add::<SUBTRACT>(p, out);
     }
 }
 
@@ -49,7 +52,7 @@ impl<const SUBTRACT: bool> WithSimd for Rows<'_, SUBTRACT> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { product, p, first, mut out } = self;
-        let Product { hessian, layout, has_bends } = *product;
+        let Product { hessian, layout, has_bends, .. } = *product;
         if !SUBTRACT {
             for axis in &mut out {
                 axis.fill(0.0);

@@ -1,0 +1,162 @@
+//! A contact: two features that are near each other, or will be, and the force between them.
+//!
+//! The gap is linear in the points, with the weights and the normal of the step's start:
+//!
+//! ```text
+//! gap(x) = d + n·sum_i w_i (x_i - start_i)                                (m)
+//! f      = k p²/(2 s) for p < s,  k (p - s/2) beyond      p = reach - gap, s = reach/4   (N)
+//! k      = 20 m/h² min(100, max(1, (reach/2d)²))                          (N/m)
+//! ```
+//!
+//! with the mass m that the contact feels. Without the ramp over s a resting sheet trembles. The potential of f is convex,
+//! and so is the step.
+//!
+//! Source: Li et al. 2020 for smooth contact in an implicit step; the law is our own.
+
+use boucle_geometry::Vector;
+
+use super::bodies::Bodies;
+use super::candidate::Candidate;
+use super::paths::Paths;
+
+/// Stiffness of a contact, in units of m/h².
+const STIFFNESS: f64 = 20.0;
+
+/// The most by which closeness makes it stiffer.
+const STIFFEST: f64 = 100.0;
+
+/// The part of the reach over which the force sets in.
+const RAMP: f64 = 0.25;
+
+/// A pair keeps no more between it than this part of its distance at rest.
+const OF_REST: f64 = 0.9;
+
+/// Distances (m) below this have no direction.
+const NOWHERE: f64 = 1e-12;
+
+/// A contact of up to four points.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contact {
+    pub(super) points: [u32; 4],
+    /// Sum to zero; zero for points that take no part.
+    pub(super) weights: [f64; 4],
+    /// From the second feature to the first.
+    pub(super) normal: Vector,
+    /// Gap (m) at the start.
+    distance: f64,
+    /// Gap (m) below which the force sets in.
+    reach: f64,
+    /// N/m
+    stiffness: f64,
+    pub(super) friction: f64,
+}
+
+impl Contact {
+    /// The contact of a candidate, if it comes near enough on its way.
+    pub(super) fn of(candidate: &Candidate, bodies: &Bodies, paths: &Paths) -> Option<Self> {
+        let points = candidate.points;
+        let closest = candidate.closest(|point| paths.start[point as usize]);
+        let length = closest.offset.norm();
+        let sides = [points[0], points[3]].map(|point| bodies.body(point));
+        let distance = length - sides[0].radius - sides[1].radius;
+        let thickness = sides[0].thickness + sides[1].thickness;
+        if length < NOWHERE {
+            return None;
+        }
+        let normal = closest.offset / length;
+        let weights = closest.weights;
+        let nearing = (0..4).map(|i| weights[i] * normal.dot(&paths.step[points[i] as usize]));
+        let nearest = distance.min(distance + nearing.sum::<f64>());
+        if nearest >= thickness || !candidate.speaks_for(closest.feature) {
+            return None;
+        }
+        let reach = if bodies.body_of[points[0] as usize] == bodies.body_of[points[3] as usize] {
+            let rest = candidate.closest(|point| bodies.rest[point as usize]).offset.norm();
+            thickness.min(OF_REST * rest)
+        } else {
+            thickness
+        };
+        let friction = (sides[0].friction * sides[1].friction).sqrt();
+        (nearest < reach).then_some(Self {
+            points,
+            weights,
+            normal,
+            distance,
+            reach,
+            stiffness: 0.0,
+            friction,
+        })
+    }
+
+    /// The contact of a particle with a plane through a point with a normal, if it comes near enough.
+    pub(super) fn with_plane(
+        [particle, origin]: [u32; 2],
+        normal: Vector,
+        bodies: &Bodies,
+        paths: &Paths,
+    ) -> Option<Self> {
+        let sides = [particle, origin].map(|point| bodies.body(point));
+        let [start, step] = [&paths.start, &paths.step]
+            .map(|of| normal.dot(&(of[particle as usize] - of[origin as usize])));
+        let reach = sides[0].thickness + sides[1].thickness;
+        let friction = (sides[0].friction * sides[1].friction).sqrt();
+        (start.min(start + step) < reach).then_some(Self {
+            points: [particle, origin, origin, origin],
+            weights: [1.0, -1.0, 0.0, 0.0],
+            normal,
+            distance: start,
+            reach,
+            stiffness: 0.0,
+            friction,
+        })
+    }
+
+    /// Takes its stiffness from the masses that it feels, for a step of h' seconds.
+    pub(super) fn stiffen(&mut self, inverse_masses: &[f64], h: f64) {
+        let shares = self.points.iter().zip(&self.weights).map(|(&point, weight)| {
+            inverse_masses.get(point as usize).map_or(0.0, |inverse| inverse * weight * weight)
+        });
+        let by_mass = shares.sum::<f64>();
+        if by_mass == 0.0 {
+            self.stiffness = 0.0;
+            return;
+        }
+        let near = 0.5 * self.reach / self.distance.max(NOWHERE);
+        let closeness = (near * near).clamp(1.0, STIFFEST);
+        self.stiffness = STIFFNESS * closeness / (by_mass * h * h);
+    }
+
+    /// Gap (m) where the points are `moved` (m) from their starts, summed by weights.
+    #[inline]
+    pub(super) fn gap(&self, moved: &Vector) -> f64 {
+        self.distance + self.normal.dot(moved)
+    }
+
+    /// Force (N) and its slope (N/m) at a gap (m).
+    #[inline]
+    pub(super) fn force(&self, gap: f64) -> [f64; 2] {
+        let depth = self.reach - gap;
+        let ramp = RAMP * self.reach;
+        if depth <= 0.0 {
+            [0.0, 0.0]
+        } else if depth < ramp {
+            let slope = self.stiffness * depth / ramp;
+            [0.5 * slope * depth, slope]
+        } else {
+            [self.stiffness * (depth - 0.5 * ramp), self.stiffness]
+        }
+    }
+
+    /// Energy (J) at a gap (m).
+    #[cfg(test)]
+    pub(super) fn energy(&self, gap: f64) -> f64 {
+        let depth = (self.reach - gap).max(0.0);
+        let ramp = RAMP * self.reach;
+        if depth < ramp {
+            self.stiffness * depth.powi(3) / (6.0 * ramp)
+        } else {
+            let beyond = depth - ramp;
+            self.stiffness * (ramp * ramp / 6.0 + 0.5 * ramp * beyond + 0.5 * beyond * beyond)
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Half-spaces that points must end in, and the nearest ends that do.
+
+use boucle_geometry::Vector;
+
+/// A half-space `n·x >= offset` in which a point must end.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HalfSpace {
+    pub(super) point: u32,
+    pub(super) normal: Vector,
+    /// m.
+    pub(super) offset: f64,
+}
+
+/// Sweeps over the half-spaces of a point: sliding along two of them takes a few.
+const SWEEPS: usize = 8;
+
+/// The end (m) of a point that starts in all its half-spaces, as near as a few projections get to where it wants to go.
+///
+/// What they leave outside a half-space is mended by going back towards the start; where a collider pushes, the start
+/// itself is outside, and the half-space is left as it is.
+pub(super) fn end_within(start: &Vector, wanted: Vector, half_spaces: &[HalfSpace]) -> Vector {
+    let mut end = wanted;
+    for _ in 0..SWEEPS {
+        let mut is_inside = true;
+        for HalfSpace { normal, offset, .. } in half_spaces {
+            let missing = offset - normal.dot(&end);
+            if missing > 0.0 {
+                end += normal * missing;
+                is_inside = false;
+            }
+        }
+        if is_inside {
+            return end;
+        }
+    }
+    let part = half_spaces.iter().fold(1.0_f64, |part, HalfSpace { normal, offset, .. }| {
+        let [from, to] = [start, &end].map(|place| normal.dot(place) - offset);
+        if to < 0.0 && from >= 0.0 { part.min(from / (from - to)) } else { part }
+    });
+    start + (end - start) * (part * part.min(1.0 - 1e-9))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn half_space(normal: [f64; 3], offset: f64) -> HalfSpace {
+        HalfSpace { point: 0, normal: Vector::from(normal).normalize(), offset }
+    }
+
+    #[test]
+    fn a_point_slides_along_the_planes_that_stop_it() {
+        let planes = [half_space([0.0, 0.0, 1.0], 0.0), half_space([1.0, 0.0, 0.0], -1.0)];
+        let end = end_within(&Vector::new(0.0, 0.0, 1.0), Vector::new(-3.0, 2.0, -1.0), &planes);
+        assert!((end - Vector::new(-1.0, 2.0, 0.0)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_point_in_a_narrow_wedge_ends_inside_it() {
+        let planes = [half_space([0.01, 0.0, 1.0], 0.0), half_space([0.01, 0.0, -1.0], 0.0)];
+        let end = end_within(&Vector::new(1.0, 0.0, 0.0), Vector::new(-5.0, 0.0, 0.0), &planes);
+        assert!(planes.iter().all(|plane| plane.normal.dot(&end) >= plane.offset));
+        assert!(end.x < 0.5, "{end}");
+    }
+}

@@ -1,0 +1,386 @@
+//! Contact: cloth with itself, with other cloth, and with colliders.
+//!
+//! **Positions at the end of every step are free of intersections if they were at its start**, and if the colliders leave
+//! room. A step
+//!
+//! 1. detects: which features come near each other on the way that the cloth would take ([`candidate`]),
+//! 2. takes those as contacts with a force and friction into its linear system ([`contact`], [`friction`], [`matrix`]),
+//! 3. truncates: cuts the solved way short where features would meet all the same ([`truncation`]).
+//!
+//! Lists are made by tasks that do not depend on threads and joined in their order; sums are gathered point by point.
+
+mod bodies;
+mod candidate;
+#[expect(clippy::module_inception, reason = "the module of contact holds the type of one contact")]
+mod contact;
+mod friction;
+mod half_space;
+mod intersections;
+mod paths;
+mod matrix;
+mod truncation;
+
+use boucle_geometry::{Bvh, Sweep, Vector};
+use rayon::prelude::*;
+
+use crate::cloth::Cloth;
+use crate::collider::Collider;
+use crate::linear::Field;
+use crate::state::Coordinates;
+use bodies::{Bodies, Patch};
+use candidate::{Candidate, candidates_of};
+use contact::Contact;
+use half_space::HalfSpace;
+use paths::Paths;
+pub(crate) use matrix::ContactMatrix;
+use truncation::{Cut, ROUNDS, SLIDING_ROUNDS, cut, half_spaces};
+
+/// Everything that touches, and how.
+#[derive(Debug)]
+pub(crate) struct Contacts {
+    bodies: Bodies,
+    cloth_tree: Bvh,
+    collider_tree: Bvh,
+    paths: Paths,
+    /// Where all points were (m) when the step began: what slips has slipped from there.
+    origins: Vec<Vector>,
+    /// Where the colliders' points are (m) at the start and at the end of the frame.
+    frame: [Vec<Vector>; 2],
+    contacts: Vec<Contact>,
+    pub(crate) matrix: ContactMatrix,
+    /// Force (N) and slope (N/m) along each contact at the present guess.
+    pressures: Vec<[f64; 2]>,
+    /// Vertices that were cut short since they were last counted.
+    clipped: u32,
+}
+
+impl Contacts {
+    pub(crate) fn new(cloths: &[Cloth], colliders: &[Collider]) -> Self {
+        let bodies = Bodies::new(cloths, colliders);
+        let tree = |patches: &[Patch]| {
+            let middles: Vec<Vector> =
+                patches.iter().map(|patch| middle(patch, &bodies.rest)).collect();
+            let groups: Vec<u32> = patches.iter().map(|patch| patch.body).collect();
+            Bvh::new(&middles, &groups)
+        };
+        let of_colliders = &bodies.rest[bodies.particle_count..];
+        Self {
+            cloth_tree: tree(&bodies.cloth_patches),
+            collider_tree: tree(&bodies.collider_patches),
+            paths: Paths::at_rest(&bodies.rest),
+            origins: bodies.rest.clone(),
+            frame: [of_colliders.to_vec(), of_colliders.to_vec()],
+            contacts: Vec::new(),
+            matrix: ContactMatrix::default(),
+            pressures: Vec::new(),
+            clipped: 0,
+            bodies,
+        }
+    }
+
+    /// Takes over which particles are pinned.
+    pub(crate) fn follow_pins(&mut self, inverse_masses: &[f64]) {
+        self.paths.follow_pins(inverse_masses);
+    }
+
+    /// Whether nothing can touch anything.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
+    /// How many contacts the last step had.
+    pub(crate) fn count(&self) -> u32 {
+        self.contacts.len() as u32
+    }
+
+    /// Vertices whose way was cut short, once for each step, since this was last asked.
+    pub(crate) fn take_clipped(&mut self) -> u32 {
+        std::mem::take(&mut self.clipped)
+    }
+
+    /// Where the points of all colliders are (m).
+    pub(crate) fn collider_positions(&self) -> &[Vector] {
+        &self.frame[0]
+    }
+
+    /// Puts the points of all colliders there (m), at rest.
+    pub(crate) fn place_colliders(&mut self, positions: &[Vector]) {
+        self.frame = [positions.to_vec(), positions.to_vec()];
+    }
+
+    /// Sends points of colliders, from one of them on, to targets (m) that they reach at the end of the next frame.
+    pub(crate) fn aim(&mut self, first: usize, targets: &[Vector]) {
+        self.frame[1][first..first + targets.len()].copy_from_slice(targets);
+    }
+
+    /// The longest way (m) of a collider's point over the next frame.
+    pub(crate) fn longest_way(&self) -> f64 {
+        let ways = self.frame[0].iter().zip(&self.frame[1]).map(|(from, to)| (to - from).norm());
+        ways.fold(0.0, f64::max)
+    }
+
+    /// Ends a frame: its end is the start of the next.
+    pub(crate) fn end_frame(&mut self) {
+        let [from, to] = &mut self.frame;
+        from.copy_from_slice(to);
+    }
+
+    /// Starts a step of several of a frame, with particles at these positions (m).
+    pub(crate) fn start_step(&mut self, step: u32, count: u32, positions: &Coordinates) {
+        self.paths.set_starts(positions);
+        let at = |step: u32| f64::from(step) / f64::from(count);
+        let [from, to] = &self.frame;
+        let ways = from.iter().zip(to).enumerate();
+        for (index, (from, to)) in ways {
+            let point = self.bodies.particle_count + index;
+            let [start, end] = [at(step - 1), at(step)].map(|part| from + part * (to - from));
+            // What arrives is exactly there.
+            let end = if step == count { *to } else { end };
+            (self.paths.start[point], self.paths.step[point]) = (start, end - start);
+        }
+        self.origins.copy_from_slice(&self.paths.start);
+    }
+
+    /// Starts the rest of a step from where its first part has ended (m): the colliders have already gone their way.
+    pub(crate) fn start_again(&mut self, positions: &Coordinates) {
+        self.paths.set_starts(positions);
+        let count = self.bodies.particle_count;
+        let colliders = self.paths.start[count..].iter_mut().zip(&mut self.paths.step[count..]);
+        for (start, step) in colliders {
+            *start += std::mem::take(step);
+        }
+    }
+
+    /// Finds the contacts on the way to these positions (m), in a step of h' seconds.
+    pub(crate) fn detect(&mut self, ends: &Coordinates, inverse_masses: &[f64], h: f64) {
+        self.paths.set_ends(ends);
+        self.fit(|body| body.radius + body.thickness);
+        let Self { bodies, paths, .. } = &*self;
+        let reach_of = |body: u32| {
+            let body = &bodies.bodies[body as usize];
+            body.radius + body.thickness
+        };
+        let visit = |[a, b]: [&Patch; 2], found: &mut Vec<Contact>| {
+            let reach = reach_of(a.body) + reach_of(b.body);
+            candidates_of(bodies, paths, [a, b], reach, |candidate| {
+                found.extend(Contact::of(&candidate, bodies, paths));
+            });
+        };
+        let mut contacts = self.search(None, visit);
+        self.each_plane(|particle, plane, normal| {
+            let points = [particle, plane.points[0]];
+            contacts.extend(Contact::with_plane(points, normal, bodies, paths));
+        });
+        contacts.par_iter_mut().for_each(|contact| contact.stiffen(inverse_masses, h));
+        self.contacts = contacts;
+        self.matrix.join(&self.contacts, inverse_masses);
+        self.pressures.clear();
+        self.pressures.resize(self.contacts.len(), [0.0; 2]);
+    }
+
+    /// Adds the forces (N) of contacts at these positions (m) to the residual, and freezes their tangents, in a step of h
+    /// seconds. Friction takes the pressure that the last solution found.
+    pub(crate) fn push(&mut self, at: &Coordinates, residual: &mut Coordinates, h: f64) {
+        let Self { contacts, pressures, paths, origins, bodies, .. } = self;
+        let moved = |point: u32| {
+            if bodies.is_particle(point) { at.get(point as usize) } else { paths.end(point) }
+        };
+        let pushed: Vec<(Vector, [f64; 2])> = contacts
+            .par_iter()
+            .zip(pressures)
+            .map(|(contact, pressure)| {
+                let (mut way, mut slip) = (Vector::zeros(), Vector::zeros());
+                for (&point, &weight) in contact.points.iter().zip(&contact.weights) {
+                    if weight != 0.0 {
+                        let place = moved(point);
+                        way += weight * (place - paths.start[point as usize]);
+                        slip += weight * (place - origins[point as usize]);
+                    }
+                }
+                let normal = &contact.normal;
+                slip -= normal * normal.dot(&slip);
+                let pressed = pressure[0];
+                *pressure = contact.force(contact.gap(&way));
+                let resistance =
+                    friction::resistance(contact.friction, pressed, slip.norm(), h);
+                (normal * pressure[0] - resistance * slip, [pressure[1], resistance])
+            })
+            .collect();
+        let (forces, factors): (Vec<_>, Vec<_>) = pushed.into_iter().unzip();
+        self.matrix.set(&factors);
+        self.matrix.add_forces(&forces, residual);
+    }
+
+    /// Takes what contacts press (N) after the particles have moved (m), by the linear model.
+    pub(crate) fn press(&mut self, moves: &Field) {
+        let count = self.bodies.particle_count;
+        let pairs = self.contacts.par_iter().zip(&mut self.pressures);
+        pairs.for_each(|(contact, pressure)| {
+            let ends = contact.points.iter().zip(&contact.weights);
+            let along = ends.filter(|end| (*end.0 as usize) < count).map(|(&point, weight)| {
+                let step = moves.0.each_ref().map(|axis| f64::from(axis[point as usize]));
+                weight * contact.normal.dot(&Vector::from(step))
+            });
+            pressure[0] = (pressure[0] - pressure[1] * along.sum::<f64>()).max(0.0);
+        });
+    }
+
+    /// Cuts the ways to these positions (m) short where they would lead through anything, and returns how many were.
+    pub(crate) fn truncate(&mut self, ends: &mut Coordinates) -> u32 {
+        self.paths.set_ends(ends);
+        let wanted = self.paths.step.clone();
+        let mut cutting = Vec::new();
+        let paths = &self.paths;
+        self.each_plane(|particle, plane, normal| {
+            let origin = paths.end(plane.points[0]);
+            let gap = normal.dot(&(paths.end(particle) - origin));
+            if paths.is_free(particle) && gap < truncation::LEAST {
+                let offset = normal.dot(&origin) + truncation::LEAST;
+                cutting.push(HalfSpace { point: particle, normal, offset });
+            }
+        });
+        let mut is_changed = vec![false; self.bodies.particle_count];
+        let mut is_stopped = is_changed.clone();
+        self.shorten(&mut cutting, &wanted, &is_stopped, &mut is_changed);
+        let mut is_first = true;
+        for round in 0..ROUNDS {
+            self.fit(|body| body.radius + truncation::MOST);
+            let Self { bodies, paths, .. } = &*self;
+            let visit = |[a, b]: [&Patch; 2], found: &mut Vec<Cut>| {
+                let radius = |body: u32| bodies.bodies[body as usize].radius;
+                let reach = radius(a.body) + radius(b.body) + truncation::MOST;
+                candidates_of(bodies, paths, [a, b], reach, |candidate| {
+                    found.extend(cut(&candidate, bodies, paths));
+                });
+            };
+            let cuts = self.search((!is_first).then_some(&is_changed), visit);
+            if cuts.is_empty() {
+                break;
+            }
+            is_first = false;
+            is_changed.fill(false);
+            for cut in &cuts {
+                let candidate: &Candidate = match cut {
+                    Cut::Plane { candidate, .. } if round < SLIDING_ROUNDS => {
+                        half_spaces(cut, &self.paths, |half_space| cutting.push(half_space));
+                        candidate
+                    }
+                    Cut::Plane { candidate, .. } | Cut::Stop { candidate } => {
+                        for &point in &candidate.points {
+                            if self.paths.is_free(point) {
+                                is_stopped[point as usize] = true;
+                            }
+                        }
+                        candidate
+                    }
+                };
+                for &point in &candidate.points {
+                    if self.paths.is_free(point) {
+                        is_changed[point as usize] = true;
+                    }
+                }
+            }
+            self.shorten(&mut cutting, &wanted, &is_stopped, &mut is_changed);
+        }
+        self.write_ends(&wanted, ends)
+    }
+
+    /// Ends points where their half-spaces let them.
+    fn shorten(
+        &mut self,
+        half_spaces: &mut [HalfSpace],
+        wanted: &[Vector],
+        is_stopped: &[bool],
+        is_changed: &mut [bool],
+    ) {
+        half_spaces.sort_by_key(|half_space| half_space.point);
+        for own in half_spaces.chunk_by(|one, other| one.point == other.point) {
+            let point = own[0].point as usize;
+            let start = self.paths.start[point];
+            let step = half_space::end_within(&start, start + wanted[point], own) - start;
+            is_changed[point] = is_changed[point] || step != self.paths.step[point];
+            self.paths.step[point] = step;
+        }
+        for (point, _) in is_stopped.iter().enumerate().filter(|(_, is_stopped)| **is_stopped) {
+            self.paths.step[point] = Vector::zeros();
+        }
+    }
+
+    /// Writes the ends of ways that are not as they were wanted.
+    fn write_ends(&mut self, wanted: &[Vector], ends: &mut Coordinates) -> u32 {
+        let mut clipped = 0;
+        for (point, wanted) in wanted[..self.bodies.particle_count].iter().enumerate() {
+            if self.paths.step[point] != *wanted {
+                ends.set(point, &self.paths.end(point as u32));
+                clipped += 1;
+            }
+        }
+        self.clipped += clipped;
+        clipped
+    }
+
+    /// Fits both trees to the present ways, with so much (m) around each patch of a body.
+    fn fit(&mut self, around: impl Fn(&bodies::Body) -> f64 + Sync) {
+        let Self { bodies, cloth_tree, collider_tree, paths, .. } = self;
+        let of = |tree: &mut Bvh, patches: &[Patch]| {
+            tree.fit(|item| {
+                let patch = &patches[item as usize];
+                let points = patch.points.map(|point| {
+                    (&paths.start[point as usize], &paths.step[point as usize])
+                });
+                Sweep::around(points, around(&bodies.bodies[patch.body as usize]))
+            });
+        };
+        of(cloth_tree, &bodies.cloth_patches);
+        of(collider_tree, &bodies.collider_patches);
+    }
+
+    /// Calls `visit` for each pair of patches that may meet; of those with a changed point only, if it is said which are.
+    fn search<T: Send>(
+        &self,
+        is_changed: Option<&Vec<bool>>,
+        visit: impl Fn([&Patch; 2], &mut Vec<T>) + Sync,
+    ) -> Vec<T> {
+        let Self { bodies: Bodies { cloth_patches, collider_patches, .. }, .. } = self;
+        let with_cloth = |a: u32, b: u32, found: &mut Vec<T>| {
+            visit([&cloth_patches[a as usize], &cloth_patches[b as usize]], found);
+        };
+        let with_collider = |a: u32, b: u32, found: &mut Vec<T>| {
+            visit([&cloth_patches[a as usize], &collider_patches[b as usize]], found);
+        };
+        let (cloths, colliders) = (&self.cloth_tree, &self.collider_tree);
+        let (mut found, more) = if let Some(is_changed) = is_changed {
+            let is_marked = |patch: u32| {
+                cloth_patches[patch as usize].points.iter().any(|&point| is_changed[point as usize])
+            };
+            let found = cloths.pairs_of_marked(is_marked, with_cloth);
+            (found, cloths.pairs_of_marked_with(is_marked, colliders, with_collider))
+        } else {
+            (cloths.pairs(with_cloth), cloths.pairs_with(colliders, with_collider))
+        };
+        found.extend(more);
+        found
+    }
+
+    /// Calls `visit` with each particle and each plane that it may touch, and the plane's normal at the end of the step.
+    fn each_plane(&self, mut visit: impl FnMut(u32, &bodies::Plane, Vector)) {
+        let Self { bodies, paths, .. } = self;
+        for plane in &bodies.planes {
+            let [origin, ahead] = plane.points.map(|point| paths.end(point));
+            let normal = (ahead - origin).normalize();
+            for particle in 0..bodies.particle_count as u32 {
+                let cloth = bodies.body_of[particle as usize];
+                if bodies.may_touch(cloth, plane.body)
+                    && bodies.is_included(particle, cloth, plane.body)
+                {
+                    visit(particle, plane, normal);
+                }
+            }
+        }
+    }
+}
+
+fn middle(patch: &Patch, places: &[Vector]) -> Vector {
+    let sum: Vector = patch.points.iter().map(|&point| places[point as usize]).sum();
+    sum / 3.0
+}

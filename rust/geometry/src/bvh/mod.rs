@@ -49,7 +49,7 @@ impl Bvh {
             .collect();
         order.sort_unstable();
         let mut items: Vec<u32> = order.into_iter().map(|(_, _, item)| item).collect();
-        items.resize(items.len().next_multiple_of(WIDTH), u32::MAX);
+        items.resize(items.len().max(1).next_multiple_of(WIDTH), u32::MAX);
         let mut counts = vec![items.len() / WIDTH];
         while counts.len() < 2 || counts.last().is_some_and(|&count| count > 1) {
             counts.push(counts[counts.len() - 1].div_ceil(WIDTH));

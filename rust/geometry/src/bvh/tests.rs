@@ -100,6 +100,9 @@ fn two_hierarchies_find_their_pairs() {
         .map(|pair| pair.map(|item| item as u32))
         .collect();
     assert_eq!(found, expected);
+    let none = Balls::new(0, 0, 0.0).bvh();
+    assert!(none.pairs_with(&many.bvh(), |a, b, found| found.push([a, b])).is_empty());
+    assert!(many.bvh().pairs_with(&none, |a, b, found| found.push([a, b])).is_empty());
     let marked =
         many.bvh().pairs_of_marked_with(|item| item < 300, &few.bvh(), |a, b, found: &mut Vec<_>| {
             found.push([a, b]);

@@ -1,32 +1,20 @@
-//! What can touch, as it is given: points, and patches of up to three of them. It never changes.
+//! What can touch, as it is given. It never changes.
 //!
-//! Points are the particles of all cloths, then the points of all colliders. A patch is a triangle, or a lone edge or
-//! point with a radius. Every point and every edge is owned by one of the patches that share it, so that pairs of
-//! patches lead to each pair of a point and a triangle, and of two edges, once.
-//!
-//! Source: Curtis, Tamstorf & Manocha 2008 for owned features.
+//! Points are the particles of all cloths, then the points of all colliders. They are joined to edges and triangles; a
+//! sphere is a lone point with a radius, a capsule a lone edge.
 
-use boucle_geometry::{Mesh, Vector};
+use boucle_geometry::Vector;
 
 use crate::cloth::{Cloth, placed};
 use crate::collider::{Collider, Shape};
 use crate::collision::Collision;
 
-/// Points joined to a triangle, an edge (the last two are the same) or a point (all are).
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Patch {
-    pub(super) points: [u32; 3],
-    /// How many of them differ.
-    pub(super) size: u8,
-    /// Bit i for point i, bit 3 + i for the edge from point i to the next.
-    pub(super) owned: u8,
-    pub(super) body: u32,
-}
+use super::features::Features;
 
 /// What a cloth or a collider is made of.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Body {
-    /// How far (m) it reaches around its patches: nothing may come in there.
+    /// How far (m) it reaches around its features: nothing may come in there.
     pub(super) radius: f64,
     /// What is kept free (m) around that.
     pub(super) thickness: f64,
@@ -40,7 +28,6 @@ pub(super) struct Body {
 pub(super) struct Plane {
     /// Its points: one of the plane, and one in front of it.
     pub(super) points: [u32; 2],
-    pub(super) body: u32,
 }
 
 /// All that can touch.
@@ -51,8 +38,8 @@ pub(super) struct Bodies {
     pub(super) body_of: Vec<u32>,
     /// Points that move by themselves; the others are colliders'.
     pub(super) particle_count: usize,
-    pub(super) cloth_patches: Vec<Patch>,
-    pub(super) collider_patches: Vec<Patch>,
+    pub(super) cloths: Features,
+    pub(super) colliders: Features,
     pub(super) planes: Vec<Plane>,
     /// Particles at rest (m), and colliders' points at the first frame.
     pub(super) rest: Vec<Vector>,
@@ -69,8 +56,8 @@ impl Bodies {
             bodies: Vec::new(),
             body_of: Vec::new(),
             particle_count,
-            cloth_patches: Vec::new(),
-            collider_patches: Vec::new(),
+            cloths: Features::default(),
+            colliders: Features::default(),
             planes: Vec::new(),
             rest: Vec::new(),
             excluded: vec![[false; 2]; particle_count],
@@ -111,7 +98,7 @@ impl Bodies {
         }
         self.meets.push(meets);
         if cloth.collision.is_some() {
-            self.cloth_patches.extend(triangles(&cloth.mesh, base, body));
+            self.cloths.add_mesh(&cloth.mesh, base);
         }
     }
 
@@ -126,22 +113,16 @@ impl Bodies {
             with_self: false,
         });
         match &collider.shape {
-            Shape::Plane => self.planes.push(Plane { points: [base, base + 1], body }),
-            Shape::Sphere { .. } => {
-                let points = [base; 3];
-                self.collider_patches.push(Patch { points, size: 1, owned: 0b1, body });
-            }
-            Shape::Capsule { .. } => {
-                let points = [base, base + 1, base + 1];
-                self.collider_patches.push(Patch { points, size: 2, owned: 0b1011, body });
-            }
-            Shape::Mesh(mesh) => self.collider_patches.extend(triangles(mesh, base, body)),
+            Shape::Plane => self.planes.push(Plane { points: [base, base + 1] }),
+            Shape::Sphere { .. } => self.colliders.add_point(base),
+            Shape::Capsule { .. } => self.colliders.add_edge([base, base + 1]),
+            Shape::Mesh(mesh) => self.colliders.add_mesh(mesh, base),
         }
     }
 
     /// Whether anything can touch at all.
     pub(super) fn is_empty(&self) -> bool {
-        self.cloth_patches.is_empty()
+        self.cloths.triangles.is_empty()
     }
 
     pub(super) fn is_particle(&self, point: u32) -> bool {
@@ -152,56 +133,17 @@ impl Bodies {
         &self.bodies[self.body_of[point as usize] as usize]
     }
 
-    /// Whether two bodies collide, of which the first is a cloth.
-    pub(super) fn may_touch(&self, cloth: u32, other: u32) -> bool {
-        match (other as usize).checked_sub(self.meets.len()) {
-            Some(collider) => self.meets[cloth as usize][collider],
-            None => cloth != other || self.bodies[cloth as usize].with_self,
-        }
+    /// Whether two features may touch; the first is one of a cloth.
+    pub(super) fn may_touch(&self, first: &[u32], second: &[u32]) -> bool {
+        let [one, other] = [first[0], second[0]].map(|point| self.body_of[point as usize]);
+        let (kind, meet) = match (other as usize).checked_sub(self.meets.len()) {
+            Some(collider) => (1, self.meets[one as usize][collider]),
+            None if one == other => (0, self.bodies[one as usize].with_self),
+            None => return true,
+        };
+        let is_included = |&point: &u32| {
+            self.excluded.get(point as usize).is_none_or(|excluded| !excluded[kind])
+        };
+        meet && first.iter().all(is_included) && second.iter().all(is_included)
     }
-
-    /// Whether a vertex of a cloth may touch another body.
-    pub(super) fn is_included(&self, point: u32, cloth: u32, other: u32) -> bool {
-        let [from_self, from_colliders] = self.excluded[point as usize];
-        if cloth == other {
-            !from_self
-        } else {
-            other < self.meets.len() as u32 || !from_colliders
-        }
-    }
-}
-
-/// The triangles of a mesh as patches: faces as fans around their first corners.
-fn triangles(mesh: &Mesh, base: u32, body: u32) -> Vec<Patch> {
-    let fans = mesh.faces().flat_map(|corners| {
-        let first = corners[0];
-        corners[1..].windows(2).map(move |pair| [first, pair[0], pair[1]])
-    });
-    let mut patches: Vec<Patch> = fans
-        .map(|points| Patch {
-            points: points.map(|point| base + point),
-            size: 3,
-            owned: 0,
-            body,
-        })
-        .collect();
-    let mut is_owned = vec![false; mesh.vertex_count()];
-    let mut edges = Vec::with_capacity(3 * patches.len());
-    for (place, patch) in patches.iter_mut().enumerate() {
-        for i in 0..3 {
-            let [a, b] = [patch.points[i], patch.points[(i + 1) % 3]];
-            edges.push(([a.min(b), a.max(b)], place, i));
-            let is_owned = &mut is_owned[(a - base) as usize];
-            if !*is_owned {
-                patch.owned |= 1 << i;
-                *is_owned = true;
-            }
-        }
-    }
-    edges.sort_unstable();
-    edges.dedup_by_key(|&mut (ends, ..)| ends);
-    for (_, place, i) in edges {
-        patches[place].owned |= 1 << (3 + i);
-    }
-    patches
 }

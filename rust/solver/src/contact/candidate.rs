@@ -3,8 +3,7 @@
 use boucle_geometry::Vector;
 use boucle_geometry::distance::{Closest, edge_edge, point_triangle};
 
-use super::bodies::{Bodies, Patch};
-use super::paths::Paths;
+use super::features::{Edge, Triangle};
 
 /// Which features meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,14 +19,37 @@ pub(super) enum Kind {
 pub(super) struct Candidate {
     pub(super) kind: Kind,
     pub(super) points: [u32; 4],
-    /// Of a triangle: what it owns, as [`Patch::owned`]. Of two edges: the ends of the first that its patch owns, if the
-    /// second is a lone edge.
+    /// What the triangle, or the first edge if the second is a lone one, speaks for.
     owned: u8,
     /// The first point is a lone one.
     is_lone: bool,
 }
 
 impl Candidate {
+    /// A point, lone or not, and a triangle.
+    pub(super) fn point_triangle(point: u32, triangle: &Triangle, is_lone: bool) -> Option<Self> {
+        let Triangle { points: [a, b, c], owned } = *triangle;
+        let points = [point, a, b, c];
+        (point != a && point != b && point != c).then_some(Self {
+            kind: Kind::PointTriangle,
+            points,
+            owned,
+            is_lone,
+        })
+    }
+
+    /// Two edges, of which the second is a lone one or not.
+    pub(super) fn edge_edge(first: &Edge, second: &Edge, is_lone: bool) -> Option<Self> {
+        let ([a, b], [c, d]) = (first.points, second.points);
+        let owned = if is_lone { first.owned } else { 0 };
+        (a != c && a != d && b != c && b != d).then_some(Self {
+            kind: Kind::EdgeEdge,
+            points: [a, b, c, d],
+            owned,
+            is_lone: false,
+        })
+    }
+
     /// How many points belong to the first feature.
     pub(super) fn split(&self) -> usize {
         match self.kind {
@@ -70,60 +92,6 @@ impl Candidate {
                 0b1110 => self.owned & 2 != 0,
                 _ => false,
             },
-        }
-    }
-}
-
-/// Calls `add` with the candidates of two patches whose features may come within `reach` (m) of each other.
-#[inline]
-pub(super) fn candidates_of(
-    bodies: &Bodies,
-    paths: &Paths,
-    [a, b]: [&Patch; 2],
-    reach: f64,
-    mut add: impl FnMut(Candidate),
-) {
-    if !bodies.may_touch(a.body, b.body) {
-        return;
-    }
-    let is_included = |point: u32, other: u32| {
-        !bodies.is_particle(point)
-            || bodies.is_included(point, bodies.body_of[point as usize], other)
-    };
-    let mut add = |candidate: Candidate| {
-        let split = candidate.split();
-        let (first, second) = candidate.points.split_at(split);
-        let other = [bodies.body_of[second[0] as usize], bodies.body_of[first[0] as usize]];
-        if first.iter().all(|&point| is_included(point, other[0]))
-            && second.iter().all(|&point| is_included(point, other[1]))
-            && paths.may_meet(first, second, reach)
-        {
-            add(candidate);
-        }
-    };
-    for [one, other] in [[a, b], [b, a]] {
-        if other.size == 3 {
-            let [p, q, r] = other.points;
-            for i in 0..3 {
-                let point = one.points[i];
-                if one.owned & (1 << i) != 0 && !other.points.contains(&point) {
-                    let (kind, points) = (Kind::PointTriangle, [point, p, q, r]);
-                    let (owned, is_lone) = (other.owned, one.size == 1);
-                    add(Candidate { kind, points, owned, is_lone });
-                }
-            }
-        }
-    }
-    for i in (0..3).filter(|i| a.owned & (8 << i) != 0) {
-        let [p, q] = [a.points[i], a.points[(i + 1) % 3]];
-        for j in (0..3).filter(|j| b.owned & (8 << j) != 0) {
-            let [r, s] = [b.points[j], b.points[(j + 1) % 3]];
-            if p != r && p != s && q != r && q != s {
-                let ends = (a.owned >> i & 1) | (a.owned >> ((i + 1) % 3) & 1) << 1;
-                let owned = if b.size == 2 { ends } else { 0 };
-                let (kind, points) = (Kind::EdgeEdge, [p, q, r, s]);
-                add(Candidate { kind, points, owned, is_lone: false });
-            }
         }
     }
 }

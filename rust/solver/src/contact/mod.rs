@@ -13,23 +13,26 @@ mod bodies;
 mod candidate;
 #[expect(clippy::module_inception, reason = "the module of contact holds the type of one contact")]
 mod contact;
+mod features;
 mod friction;
 mod half_space;
 mod intersections;
 mod paths;
+mod search;
 mod matrix;
 mod truncation;
 
-use boucle_geometry::{Bvh, Sweep, Vector};
+use boucle_geometry::Vector;
 use rayon::prelude::*;
 
 use crate::cloth::Cloth;
 use crate::collider::Collider;
 use crate::linear::Field;
 use crate::state::Coordinates;
-use bodies::{Bodies, Patch};
-use candidate::{Candidate, candidates_of};
+use bodies::{Bodies, Body};
+use candidate::Candidate;
 use contact::Contact;
+use features::Trees;
 use half_space::HalfSpace;
 use paths::Paths;
 pub(crate) use matrix::ContactMatrix;
@@ -39,8 +42,8 @@ use truncation::{Cut, ROUNDS, SLIDING_ROUNDS, cut, half_spaces};
 #[derive(Debug)]
 pub(crate) struct Contacts {
     bodies: Bodies,
-    cloth_tree: Bvh,
-    collider_tree: Bvh,
+    cloths: Trees,
+    colliders: Trees,
     paths: Paths,
     /// Where all points were (m) when the step began: what slips has slipped from there.
     origins: Vec<Vector>,
@@ -57,16 +60,10 @@ pub(crate) struct Contacts {
 impl Contacts {
     pub(crate) fn new(cloths: &[Cloth], colliders: &[Collider]) -> Self {
         let bodies = Bodies::new(cloths, colliders);
-        let tree = |patches: &[Patch]| {
-            let middles: Vec<Vector> =
-                patches.iter().map(|patch| middle(patch, &bodies.rest)).collect();
-            let groups: Vec<u32> = patches.iter().map(|patch| patch.body).collect();
-            Bvh::new(&middles, &groups)
-        };
         let of_colliders = &bodies.rest[bodies.particle_count..];
         Self {
-            cloth_tree: tree(&bodies.cloth_patches),
-            collider_tree: tree(&bodies.collider_patches),
+            cloths: Trees::new(&bodies.cloths, &bodies.rest, &bodies.body_of),
+            colliders: Trees::new(&bodies.colliders, &bodies.rest, &bodies.body_of),
             paths: Paths::at_rest(&bodies.rest),
             origins: bodies.rest.clone(),
             frame: [of_colliders.to_vec(), of_colliders.to_vec()],
@@ -156,17 +153,9 @@ impl Contacts {
         self.paths.set_ends(ends);
         self.fit(|body| body.radius + body.thickness);
         let Self { bodies, paths, .. } = &*self;
-        let reach_of = |body: u32| {
-            let body = &bodies.bodies[body as usize];
-            body.radius + body.thickness
-        };
-        let visit = |[a, b]: [&Patch; 2], found: &mut Vec<Contact>| {
-            let reach = reach_of(a.body) + reach_of(b.body);
-            candidates_of(bodies, paths, [a, b], reach, |candidate| {
-                found.extend(Contact::of(&candidate, bodies, paths));
-            });
-        };
-        let mut contacts = self.search(None, visit);
+        let mut contacts = self.search(None, |candidate, found| {
+            found.extend(Contact::of(&candidate, bodies, paths));
+        });
         self.each_plane(|particle, plane, normal| {
             let points = [particle, plane.points[0]];
             contacts.extend(Contact::with_plane(points, normal, bodies, paths));
@@ -246,14 +235,9 @@ impl Contacts {
         for round in 0..ROUNDS {
             self.fit(|body| body.radius + truncation::MOST);
             let Self { bodies, paths, .. } = &*self;
-            let visit = |[a, b]: [&Patch; 2], found: &mut Vec<Cut>| {
-                let radius = |body: u32| bodies.bodies[body as usize].radius;
-                let reach = radius(a.body) + radius(b.body) + truncation::MOST;
-                candidates_of(bodies, paths, [a, b], reach, |candidate| {
-                    found.extend(cut(&candidate, bodies, paths));
-                });
-            };
-            let cuts = self.search((!is_first).then_some(&is_changed), visit);
+            let changed = (!is_first).then_some(&is_changed[..]);
+            let cuts =
+                self.search(changed, |candidate, found| found.extend(cut(&candidate, bodies, paths)));
             if cuts.is_empty() {
                 break;
             }
@@ -319,49 +303,6 @@ impl Contacts {
         clipped
     }
 
-    /// Fits both trees to the present ways, with so much (m) around each patch of a body.
-    fn fit(&mut self, around: impl Fn(&bodies::Body) -> f64 + Sync) {
-        let Self { bodies, cloth_tree, collider_tree, paths, .. } = self;
-        let of = |tree: &mut Bvh, patches: &[Patch]| {
-            tree.fit(|item| {
-                let patch = &patches[item as usize];
-                let points = patch.points.map(|point| {
-                    (&paths.start[point as usize], &paths.step[point as usize])
-                });
-                Sweep::around(points, around(&bodies.bodies[patch.body as usize]))
-            });
-        };
-        of(cloth_tree, &bodies.cloth_patches);
-        of(collider_tree, &bodies.collider_patches);
-    }
-
-    /// Calls `visit` for each pair of patches that may meet; of those with a changed point only, if it is said which are.
-    fn search<T: Send>(
-        &self,
-        is_changed: Option<&Vec<bool>>,
-        visit: impl Fn([&Patch; 2], &mut Vec<T>) + Sync,
-    ) -> Vec<T> {
-        let Self { bodies: Bodies { cloth_patches, collider_patches, .. }, .. } = self;
-        let with_cloth = |a: u32, b: u32, found: &mut Vec<T>| {
-            visit([&cloth_patches[a as usize], &cloth_patches[b as usize]], found);
-        };
-        let with_collider = |a: u32, b: u32, found: &mut Vec<T>| {
-            visit([&cloth_patches[a as usize], &collider_patches[b as usize]], found);
-        };
-        let (cloths, colliders) = (&self.cloth_tree, &self.collider_tree);
-        let (mut found, more) = if let Some(is_changed) = is_changed {
-            let is_marked = |patch: u32| {
-                cloth_patches[patch as usize].points.iter().any(|&point| is_changed[point as usize])
-            };
-            let found = cloths.pairs_of_marked(is_marked, with_cloth);
-            (found, cloths.pairs_of_marked_with(is_marked, colliders, with_collider))
-        } else {
-            (cloths.pairs(with_cloth), cloths.pairs_with(colliders, with_collider))
-        };
-        found.extend(more);
-        found
-    }
-
     /// Calls `visit` with each particle and each plane that it may touch, and the plane's normal at the end of the step.
     fn each_plane(&self, mut visit: impl FnMut(u32, &bodies::Plane, Vector)) {
         let Self { bodies, paths, .. } = self;
@@ -369,18 +310,10 @@ impl Contacts {
             let [origin, ahead] = plane.points.map(|point| paths.end(point));
             let normal = (ahead - origin).normalize();
             for particle in 0..bodies.particle_count as u32 {
-                let cloth = bodies.body_of[particle as usize];
-                if bodies.may_touch(cloth, plane.body)
-                    && bodies.is_included(particle, cloth, plane.body)
-                {
+                if bodies.may_touch(&[particle], &plane.points[..1]) {
                     visit(particle, plane, normal);
                 }
             }
         }
     }
-}
-
-fn middle(patch: &Patch, places: &[Vector]) -> Vector {
-    let sum: Vector = patch.points.iter().map(|&point| places[point as usize]).sum();
-    sum / 3.0
 }

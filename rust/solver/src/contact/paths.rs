@@ -56,22 +56,4 @@ impl Paths {
             *step = Vector::new(*x, *y, *z) - start;
         }
     }
-
-    /// Whether boxes around two features may come within `reach` (m) of each other on the way.
-    #[inline]
-    pub(super) fn may_meet(&self, first: &[u32], second: &[u32], reach: f64) -> bool {
-        let least = |points: &[u32], of: &[Vector], axis: usize| {
-            points.iter().fold(f64::INFINITY, |least, &point| least.min(of[point as usize][axis]))
-        };
-        let most = |points: &[u32], of: &[Vector], axis: usize| {
-            points.iter().fold(f64::NEG_INFINITY, |most, &point| most.max(of[point as usize][axis]))
-        };
-        (0..3).all(|axis| {
-            let apart = |one: &[u32], other: &[u32]| {
-                least(one, &self.start, axis) - most(other, &self.start, axis)
-                    + (least(one, &self.step, axis) - most(other, &self.step, axis)).min(0.0)
-            };
-            apart(first, second) <= reach && apart(second, first) <= reach
-        })
-    }
 }

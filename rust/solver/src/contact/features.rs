@@ -1,0 +1,136 @@
+//! The points, edges and triangles of cloths or of colliders, and hierarchies of boxes over them.
+
+use boucle_geometry::{Bvh, Mesh, Sweep, Vector};
+
+use super::paths::Paths;
+
+/// Three points, and which of its corners and edges it speaks for: bit i for corner i, bit 3 + i for the edge from corner i
+/// to the next. Every corner and edge of a mesh has one triangle that does.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Triangle {
+    pub(super) points: [u32; 3],
+    pub(super) owned: u8,
+}
+
+/// Two points, and which of them it speaks for: bit i for end i.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    pub(super) points: [u32; 2],
+    pub(super) owned: u8,
+}
+
+/// All features of one side.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Features {
+    pub(super) points: Vec<u32>,
+    pub(super) edges: Vec<Edge>,
+    pub(super) triangles: Vec<Triangle>,
+}
+
+impl Features {
+    /// Adds those of a mesh whose vertices are numbered from `base`: faces as fans around their first corners. Vertices
+    /// without a face are left out.
+    pub(super) fn add_mesh(&mut self, mesh: &Mesh, base: u32) {
+        let fans = mesh.faces().flat_map(|corners| {
+            let first = corners[0];
+            corners[1..].windows(2).map(move |pair| [first, pair[0], pair[1]])
+        });
+        let first = self.triangles.len();
+        let mut is_owned = vec![false; mesh.vertex_count()];
+        let mut sides = Vec::with_capacity(3 * mesh.triangle_count());
+        for (place, corners) in fans.enumerate() {
+            let mut owned = 0;
+            for i in 0..3 {
+                let [a, b] = [corners[i], corners[(i + 1) % 3]];
+                sides.push(([a.min(b), a.max(b)], first + place, i));
+                let is_owned = &mut is_owned[a as usize];
+                owned |= u8::from(!*is_owned) << i;
+                *is_owned = true;
+            }
+            let points = corners.map(|corner| base + corner);
+            self.triangles.push(Triangle { points, owned });
+        }
+        sides.sort_unstable();
+        sides.dedup_by_key(|&mut (ends, ..)| ends);
+        let (edges, points) = (&mut self.edges, &mut self.points);
+        for (ends, place, i) in sides {
+            self.triangles[place].owned |= 8 << i;
+            let mut owned = 0;
+            for (i, end) in ends.into_iter().enumerate() {
+                // The triangles' marks are used up: an end that is still marked has no edge yet.
+                owned |= u8::from(std::mem::take(&mut is_owned[end as usize])) << i;
+            }
+            edges.push(Edge { points: ends.map(|end| base + end), owned });
+        }
+        let mut used: Vec<u32> = mesh.faces().flatten().map(|vertex| base + vertex).collect();
+        used.sort_unstable();
+        used.dedup();
+        points.extend(used);
+    }
+
+    pub(super) fn add_point(&mut self, point: u32) {
+        self.points.push(point);
+    }
+
+    pub(super) fn add_edge(&mut self, points: [u32; 2]) {
+        self.points.extend(points);
+        self.edges.push(Edge { points, owned: 0b11 });
+    }
+}
+
+/// A hierarchy of boxes over each kind of feature.
+#[derive(Clone, Debug)]
+pub(super) struct Trees {
+    pub(super) points: Bvh,
+    pub(super) edges: Bvh,
+    pub(super) triangles: Bvh,
+}
+
+impl Trees {
+    /// Hierarchies over features where their points lie (m); those of a body stay together.
+    pub(super) fn new(features: &Features, places: &[Vector], body_of: &[u32]) -> Self {
+        fn tree<'a>(
+            features: impl Iterator<Item = &'a [u32]> + Clone,
+            places: &[Vector],
+            body_of: &[u32],
+        ) -> Bvh {
+            let middles: Vec<Vector> = features
+                .clone()
+                .map(|points| {
+                    let sum: Vector = points.iter().map(|&point| places[point as usize]).sum();
+                    sum / points.len() as f64
+                })
+                .collect();
+            let groups: Vec<u32> = features.map(|points| body_of[points[0] as usize]).collect();
+            Bvh::new(&middles, &groups)
+        }
+        let Features { points, edges, triangles } = features;
+        Self {
+            points: tree(points.chunks(1), places, body_of),
+            edges: tree(edges.iter().map(|edge| &edge.points[..]), places, body_of),
+            triangles: tree(triangles.iter().map(|each| &each.points[..]), places, body_of),
+        }
+    }
+
+    /// Fits all boxes to ways, with what a point's body keeps (m) around it.
+    pub(super) fn fit(
+        &mut self,
+        features: &Features,
+        paths: &Paths,
+        around: impl Fn(u32) -> f64 + Sync,
+    ) {
+        let way = |point: u32| (&paths.start[point as usize], &paths.step[point as usize]);
+        self.points.fit(|item| {
+            let point = features.points[item as usize];
+            Sweep::around([way(point)], around(point))
+        });
+        self.edges.fit(|item| {
+            let points = features.edges[item as usize].points;
+            Sweep::around(points.map(way), around(points[0]))
+        });
+        self.triangles.fit(|item| {
+            let points = features.triangles[item as usize].points;
+            Sweep::around(points.map(way), around(points[0]))
+        });
+    }
+}

@@ -1,12 +1,14 @@
-//! Pure geometry: meshes, boxes, distances, intersections. No physics, no files.
+//! Pure geometry: meshes, boxes, distances, collisions, intersections. No physics, no files.
 
 mod aabb;
+mod ccd;
 pub mod distance;
 mod intersection;
 mod mesh;
 mod winding;
 
 pub use aabb::Aabb;
+pub use ccd::{edge_edge_impact, point_triangle_impact};
 pub use intersection::{Meeting, edge_crosses_triangle, edge_meets_triangle};
 pub use mesh::{Mesh, MeshError};
 pub use winding::is_inside;

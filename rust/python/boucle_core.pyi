@@ -158,3 +158,48 @@ def bake(
     Returns:
         The report, as in report.json.
     """
+
+def point_triangle_distance(points: Buffer, out: Buffer) -> None:
+    """Fill out, float64 (n,), with the distances (m) of points and triangles.
+
+    Args:
+        points: Positions (m), float32 or float64 (n, 4, 3): the point, then the triangle.
+        out: The distances.
+    """
+
+def edge_edge_distance(points: Buffer, out: Buffer) -> None:
+    """Fill out, float64 (n,), with the distances (m) of two edges.
+
+    Args:
+        points: Positions (m), float32 or float64 (n, 4, 3): one edge, then the other.
+        out: The distances.
+    """
+
+def point_triangle_impact(starts: Buffer, ends: Buffer, gap: float, out: Buffer) -> None:
+    """Fill out, float64 (n,), with the times up to which points and triangles on straight paths surely keep a gap.
+
+    Args:
+        starts: Positions (m) at time 0, float32 or float64 (n, 4, 3): the point, then the triangle.
+        ends: Positions (m) at time 1.
+        gap: Distance (m) to be kept.
+        out: The times: 0 where they are too near at the start, infinite where they keep the gap to the end.
+    """
+
+def edge_edge_impact(starts: Buffer, ends: Buffer, gap: float, out: Buffer) -> None:
+    """Fill out, float64 (n,), with the times up to which two edges on straight paths surely keep a gap.
+
+    Args:
+        starts: Positions (m) at time 0, float32 or float64 (n, 4, 3): one edge, then the other.
+        ends: Positions (m) at time 1.
+        gap: Distance (m) to be kept.
+        out: The times: 0 where they are too near at the start, infinite where they keep the gap to the end.
+    """
+
+def edge_crosses_triangle(points: Buffer, out: Buffer) -> None:
+    """Fill out, uint8 (n,), with what edges and triangles have in common, exactly.
+
+    Args:
+        points: Positions (m), float32 or float64 (n, 5, 3): the edge, then the triangle.
+        out: 0 no point; 1 a touch: an end of the edge in the plane of the triangle, or a passage through its border; 2 a
+            crossing: the ends on either side, and a passage through the inside.
+    """

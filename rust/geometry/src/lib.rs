@@ -1,7 +1,9 @@
-//! Pure geometry: meshes, boxes, which things come near each other, distances, intersections. No physics, no files.
+//! Pure geometry: meshes, boxes, which things come near each other, distances, collisions, intersections. No physics, no
+//! files.
 
 mod aabb;
 mod bvh;
+mod ccd;
 pub mod distance;
 mod intersection;
 mod mesh;
@@ -9,6 +11,7 @@ mod winding;
 
 pub use aabb::Aabb;
 pub use bvh::{Bvh, Sweep};
+pub use ccd::{edge_edge_impact, point_triangle_impact};
 pub use intersection::{Meeting, edge_crosses_triangle, edge_meets_triangle};
 pub use mesh::{Mesh, MeshError};
 pub use winding::is_inside;

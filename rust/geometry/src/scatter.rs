@@ -35,12 +35,13 @@ impl Scatter {
     }
 
     /// Four points of a kind that goes round with `index`, and their size: generic, of a lattice (which repeats points,
-    /// lines and planes), of a plane, slivers, needles, parallel edges, each large, tiny, and far from the origin.
+    /// lines and planes), of a plane, slivers, needles, parallel edges, a point on a triangle, a line, a point on a sliver,
+    /// edges that cross at a small angle; each large, tiny, and far from the origin.
     pub(crate) fn four_points(&mut self, index: usize) -> ([Vector; 4], f64) {
         let mut x = [(); 4].map(|()| self.point());
         let thin = 10_f64.powi(-self.whole(4, 16));
         let share = self.number();
-        match index % 8 {
+        match index % 10 {
             0 => {}
             1 => x = x.map(|_| self.lattice_point(1)),
             2 => x.iter_mut().for_each(|point| point.z = 0.5),
@@ -48,7 +49,16 @@ impl Scatter {
             4 => x[2] = x[1] + self.point() * thin,
             5 => x[3] = x[2] + (x[1] - x[0]) * share + self.point() * thin,
             6 => x[0] = x[1] * share + x[2] * (0.7 - share) + x[3] * 0.3 + self.point() * thin,
-            _ => x = [0.0, 1.0, share, 2.0 * share].map(|t| x[0] + x[1] * t + x[2] * thin),
+            7 => x = [0.0, 1.0, share, 2.0 * share].map(|t| x[0] + x[1] * t + x[2] * thin),
+            8 => {
+                x[3] = x[1] + (x[2] - x[1]) * share + self.point() * thin;
+                x[0] = x[1] * 0.3 + x[2] * 0.3 + x[3] * 0.4;
+            }
+            _ => {
+                let (middle, along) = ((x[0] + x[1]) * 0.5, (x[1] - x[0]) * share);
+                let aslant = along + self.point() * thin;
+                (x[2], x[3]) = (middle - aslant, middle + aslant);
+            }
         }
         let scale = 10_f64.powi(self.whole(-9, 9));
         let far = if self.whole(0, 3) == 0 { self.point() * 1e3 } else { Vector::zeros() };

@@ -30,6 +30,26 @@ pub(crate) fn positions(
     Ok(numbers.chunks_exact(3).map(Vector::from_column_slice).collect())
 }
 
+/// Groups of N points (m) out of a float32 or float64 buffer of shape (n, N, 3).
+pub(crate) fn point_groups<const N: usize>(
+    array: &Bound<'_, PyAny>,
+    what: &str,
+) -> PyResult<Vec<[Vector; N]>> {
+    let py = array.py();
+    let buffer = contiguous(array, what)?;
+    if !matches!(*buffer.shape(), [_, points, 3] if points == N) {
+        return Err(wrong_shape(py, &buffer, what, &format!("(n, {N}, 3)")));
+    }
+    let numbers = floats(py, &buffer, what)?;
+    if let Some(number) = numbers.iter().find(|number| !number.is_finite()) {
+        return Err(refuse(py, format!("{what} holds {number}; accepted: finite numbers")));
+    }
+    let group = |numbers: &[f64]| {
+        std::array::from_fn(|point| Vector::from_column_slice(&numbers[3 * point..3 * point + 3]))
+    };
+    Ok(numbers.chunks_exact(3 * N).map(group).collect())
+}
+
 /// Refuses positions that are not finite or far beyond any scene, out of those at `vertices`.
 pub(crate) fn check_finite(
     py: Python<'_>,
@@ -83,16 +103,20 @@ pub(crate) fn write_rows(array: &Bound<'_, PyAny>, rows: &[Vector]) -> PyResult<
     }
 }
 
-/// Fills a float32 buffer of shape (n,).
-pub(crate) fn write_numbers(array: &Bound<'_, PyAny>, numbers: &[f32]) -> PyResult<()> {
+/// Fills a buffer of shape (n,) whose numbers are of the type that Python calls `kind`.
+pub(crate) fn write_numbers<T: Element>(
+    array: &Bound<'_, PyAny>,
+    numbers: &[T],
+    kind: &str,
+) -> PyResult<()> {
     let py = array.py();
     let buffer = contiguous(array, "out")?;
     if buffer.item_count() != numbers.len() || buffer.dimensions() != 1 {
         return Err(wrong_shape(py, &buffer, "out", &format!("({},)", numbers.len())));
     }
-    match buffer.as_typed::<f32>() {
+    match buffer.as_typed::<T>() {
         Ok(buffer) => fill(py, buffer, numbers.iter().copied()),
-        Err(_) => Err(wrong_numbers(py, &buffer, "out", "float32")),
+        Err(_) => Err(wrong_numbers(py, &buffer, "out", kind)),
     }
 }
 

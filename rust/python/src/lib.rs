@@ -4,6 +4,7 @@
 //! - `buffers`: arrays in and out, by the buffer protocol
 //! - `simulation`: the class `Simulation`
 //! - `bake`: the function `bake`
+//! - `geometry`: distances, collisions and intersections of many features at once
 //!
 //! The surface is written down in `boucle_core.pyi`. Where the environment holds `BOUCLE_TEST_HOOKS` when the module is
 //! imported, it has one function more, `_panic_for_tests(simulation=None)`, which panics inside the boundary as a fault of
@@ -12,6 +13,7 @@
 mod bake;
 mod boundary;
 mod buffers;
+mod geometry;
 mod simulation;
 
 use pyo3::prelude::*;
@@ -23,6 +25,11 @@ fn boucle_core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     boundary::add_exceptions(module)?;
     module.add_class::<simulation::Simulation>()?;
     module.add_function(wrap_pyfunction!(bake::bake, module)?)?;
+    module.add_function(wrap_pyfunction!(geometry::point_triangle_distance, module)?)?;
+    module.add_function(wrap_pyfunction!(geometry::edge_edge_distance, module)?)?;
+    module.add_function(wrap_pyfunction!(geometry::point_triangle_impact, module)?)?;
+    module.add_function(wrap_pyfunction!(geometry::edge_edge_impact, module)?)?;
+    module.add_function(wrap_pyfunction!(geometry::edge_crosses_triangle, module)?)?;
     if std::env::var_os("BOUCLE_TEST_HOOKS").is_some() {
         module.add_function(wrap_pyfunction!(simulation::panic_for_tests, module)?)?;
     }

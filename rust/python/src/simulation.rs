@@ -186,7 +186,7 @@ impl Simulation {
     fn read_strain(&mut self, py: Python<'_>, cloth: i64, out: &Bound<'_, PyAny>) -> PyResult<()> {
         let index = self.cloth(py, cloth)?.0;
         let strain = self.with(py, |assembly| Ok(assembly.simulation.vertex_strain(index)))?;
-        buffers::write_numbers(out, &strain)
+        buffers::write_numbers(out, &strain, "float32")
     }
 
     fn overstretched_edges(

@@ -121,7 +121,11 @@ impl Simulation {
             good: state.clone(),
             good_memory: None,
             frame: settings.first_frame,
-            accuracy: Accuracy { tolerance: settings.tolerance, size: plan::size_of(&cloths) },
+            accuracy: Accuracy {
+                tolerance: settings.tolerance,
+                size: plan::size_of(&cloths),
+                is_in_contact: false,
+            },
             substeps_taken: 0,
             iterations_taken: 0,
             clipped: 0,
@@ -254,8 +258,9 @@ impl Simulation {
         self.clipped = self.contacts.take_clipped();
         self.intersect();
         self.substeps_taken = substeps;
+        let accuracy = self.accuracy_now();
         if let Some(memory) = self.method.memory_mut() {
-            memory.substeps = self.accuracy.after(substeps, memory.mean_error(substeps));
+            memory.substeps = accuracy.after(substeps, memory.mean_error(substeps));
             memory.error = 0.0;
         }
         self.iterations_taken = self.method.take_iterations();

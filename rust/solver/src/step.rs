@@ -59,7 +59,6 @@ impl Step<'_> {
             if clipped == 0 && is_held {
                 break;
             }
-            contacts.start_again(&state.position);
             is_held = self.hold(state, limits, SWEEPS_AFTER_PULL, true);
             clipped = contacts.truncate(&mut state.position);
         }

@@ -47,6 +47,8 @@ pub(super) struct Bodies {
     excluded: Vec<[bool; 2]>,
     /// For each cloth, which colliders it meets.
     meets: Vec<Vec<bool>>,
+    /// Whether everything may touch everything.
+    all_touch: bool,
 }
 
 impl Bodies {
@@ -62,6 +64,7 @@ impl Bodies {
             rest: Vec::new(),
             excluded: vec![[false; 2]; particle_count],
             meets: Vec::new(),
+            all_touch: true,
         };
         for (cloth, base) in placed(cloths) {
             bodies.add_cloth(cloth, base, colliders.len());
@@ -96,6 +99,10 @@ impl Bodies {
         for &collider in collision.colliders.iter().flatten() {
             meets[collider as usize] = true;
         }
+        self.all_touch &= collision.with_self
+            && !meets.contains(&false)
+            && collision.excluded_from_self.is_empty()
+            && collision.excluded_from_colliders.is_empty();
         self.meets.push(meets);
         if cloth.collision.is_some() {
             self.cloths.add_mesh(&cloth.mesh, base);
@@ -134,7 +141,12 @@ impl Bodies {
     }
 
     /// Whether two features may touch; the first is one of a cloth.
+    #[inline]
     pub(super) fn may_touch(&self, first: &[u32], second: &[u32]) -> bool {
+        self.all_touch || self.touch(first, second)
+    }
+
+    fn touch(&self, first: &[u32], second: &[u32]) -> bool {
         let [one, other] = [first[0], second[0]].map(|point| self.body_of[point as usize]);
         let (kind, meet) = match (other as usize).checked_sub(self.meets.len()) {
             Some(collider) => (1, self.meets[one as usize][collider]),

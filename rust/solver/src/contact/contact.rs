@@ -14,6 +14,7 @@
 //! Source: Li et al. 2020 for smooth contact in an implicit step; the law is our own.
 
 use boucle_geometry::Vector;
+use boucle_geometry::distance::Closest;
 
 use super::bodies::Bodies;
 use super::candidate::Candidate;
@@ -51,43 +52,79 @@ pub(super) struct Contact {
     pub(super) friction: f64,
 }
 
-impl Contact {
-    /// The contact of a candidate, if it comes near enough on its way.
-    pub(super) fn of(candidate: &Candidate, bodies: &Bodies, paths: &Paths) -> Option<Self> {
+/// Two features where they start, and how near they come on their way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near {
+    closest: Closest,
+    normal: Vector,
+    /// Gap (m) at the start.
+    distance: f64,
+    /// The least gap (m), at the start or at the end, between their closest points.
+    nearest: f64,
+    /// Gap (m) along the normal at the end, between any of their points.
+    end: f64,
+    /// What is kept free (m) around both.
+    thickness: f64,
+}
+
+impl Near {
+    #[inline]
+    pub(super) fn new(candidate: &Candidate, bodies: &Bodies, paths: &Paths) -> Self {
         let points = candidate.points;
         let closest = candidate.closest(|point| paths.start[point as usize]);
         let length = closest.offset.norm();
         let sides = [points[0], points[3]].map(|point| bodies.body(point));
         let distance = length - sides[0].radius - sides[1].radius;
-        let thickness = sides[0].thickness + sides[1].thickness;
-        if length < NOWHERE {
+        let normal = closest.offset / length.max(NOWHERE);
+        let steps = points.map(|point| normal.dot(&paths.step[point as usize]));
+        let nearing: f64 = steps.iter().zip(&closest.weights).map(|(step, w)| step * w).sum();
+        let (first, second) = steps.split_at(candidate.split());
+        let least = first.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = second.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Self {
+            closest,
+            normal,
+            distance,
+            nearest: distance.min(distance + nearing),
+            end: distance + least - most,
+            thickness: sides[0].thickness + sides[1].thickness,
+        }
+    }
+
+    /// Whether ways that differ a little from these may lead through each other.
+    pub(super) fn is_to_be_watched(&self) -> bool {
+        !(self.end >= self.thickness)
+    }
+
+    /// The contact of the features, if they come near enough.
+    pub(super) fn contact(&self, candidate: &Candidate, bodies: &Bodies) -> Option<Contact> {
+        let Self { closest, normal, distance, nearest, thickness, .. } = *self;
+        let is_near = nearest < thickness && distance > -thickness;
+        if !is_near || closest.offset.norm() < NOWHERE || !candidate.speaks_for(closest.feature) {
             return None;
         }
-        let normal = closest.offset / length;
-        let weights = closest.weights;
-        let nearing = (0..4).map(|i| weights[i] * normal.dot(&paths.step[points[i] as usize]));
-        let nearest = distance.min(distance + nearing.sum::<f64>());
-        if nearest >= thickness || !candidate.speaks_for(closest.feature) {
-            return None;
-        }
-        let reach = if bodies.body_of[points[0] as usize] == bodies.body_of[points[3] as usize] {
+        let points = candidate.points;
+        let owners = [points[0], points[3]].map(|point| bodies.body_of[point as usize]);
+        let reach = if owners[0] == owners[1] {
             let rest = candidate.closest(|point| bodies.rest[point as usize]).offset.norm();
             thickness.min(OF_REST * rest)
         } else {
             thickness
         };
-        let friction = (sides[0].friction * sides[1].friction).sqrt();
-        (nearest < reach).then_some(Self {
+        let [one, other] = owners.map(|body| bodies.bodies[body as usize].friction);
+        (nearest < reach).then_some(Contact {
             points,
-            weights,
+            weights: closest.weights,
             normal,
             distance,
             reach,
             stiffness: 0.0,
-            friction,
+            friction: (one * other).sqrt(),
         })
     }
+}
 
+impl Contact {
     /// The contact of a particle with a plane through a point with a normal, if it comes near enough.
     pub(super) fn with_plane(
         [particle, origin]: [u32; 2],

@@ -20,6 +20,7 @@ mod intersections;
 mod paths;
 mod search;
 mod matrix;
+mod cut;
 mod truncation;
 
 use boucle_geometry::Vector;
@@ -29,14 +30,12 @@ use crate::cloth::Cloth;
 use crate::collider::Collider;
 use crate::linear::Field;
 use crate::state::Coordinates;
-use bodies::{Bodies, Body};
+use bodies::Bodies;
 use candidate::Candidate;
-use contact::Contact;
+use contact::{Contact, Near};
 use features::Trees;
-use half_space::HalfSpace;
 use paths::Paths;
 pub(crate) use matrix::ContactMatrix;
-use truncation::{Cut, ROUNDS, SLIDING_ROUNDS, cut, half_spaces};
 
 /// Everything that touches, and how.
 #[derive(Debug)]
@@ -50,6 +49,12 @@ pub(crate) struct Contacts {
     /// Where the colliders' points are (m) at the start and at the end of the frame.
     frame: [Vec<Vector>; 2],
     contacts: Vec<Contact>,
+    /// Candidates that may meet on ways near those that were expected, and those ways (m).
+    watched: Vec<Candidate>,
+    expected: Vec<Vector>,
+    /// Whether the present ways are free of intersections, and scratch to remember them (m).
+    is_safe: bool,
+    safe: Vec<Vector>,
     pub(crate) matrix: ContactMatrix,
     /// Force (N) and slope (N/m) along each contact at the present guess.
     pressures: Vec<[f64; 2]>,
@@ -68,6 +73,10 @@ impl Contacts {
             origins: bodies.rest.clone(),
             frame: [of_colliders.to_vec(), of_colliders.to_vec()],
             contacts: Vec::new(),
+            watched: Vec::new(),
+            expected: vec![Vector::zeros(); bodies.rest.len()],
+            is_safe: false,
+            safe: Vec::new(),
             matrix: ContactMatrix::default(),
             pressures: Vec::new(),
             clipped: 0,
@@ -110,10 +119,16 @@ impl Contacts {
         self.frame[1][first..first + targets.len()].copy_from_slice(targets);
     }
 
-    /// The longest way (m) of a collider's point over the next frame.
-    pub(crate) fn longest_way(&self) -> f64 {
+    /// The longest way (m) that a collider and a particle with one of these velocities (m/s) go towards each other over
+    /// the next frame of a duration (s); 0 without colliders.
+    pub(crate) fn longest_way(&self, velocities: &Coordinates, duration: f64) -> f64 {
         let ways = self.frame[0].iter().zip(&self.frame[1]).map(|(from, to)| (to - from).norm());
-        ways.fold(0.0, f64::max)
+        if self.is_empty() || self.frame[0].is_empty() {
+            return 0.0;
+        }
+        let speeds =
+            (0..self.bodies.particle_count).map(|particle| velocities.get(particle).norm_squared());
+        ways.fold(0.0, f64::max) + duration * speeds.fold(0.0, f64::max).sqrt()
     }
 
     /// Ends a frame: its end is the start of the next.
@@ -148,17 +163,25 @@ impl Contacts {
         }
     }
 
-    /// Finds the contacts on the way to these positions (m), in a step of h' seconds.
+    /// Finds the contacts on the way to these positions (m), in a step of h' seconds, and what to watch there.
     pub(crate) fn detect(&mut self, ends: &Coordinates, inverse_masses: &[f64], h: f64) {
         self.paths.set_ends(ends);
+        self.expected.copy_from_slice(&self.paths.step);
+        self.is_safe = false;
         self.fit(|body| body.radius + body.thickness);
         let Self { bodies, paths, .. } = &*self;
-        let mut contacts = self.search(None, |candidate, found| {
-            found.extend(Contact::of(&candidate, bodies, paths));
+        let found = self.search(None, |candidate, found| {
+            let near = Near::new(&candidate, bodies, paths);
+            let contact = near.contact(&candidate, bodies);
+            if contact.is_some() || near.is_to_be_watched() {
+                found.push((candidate, contact));
+            }
         });
+        let mut contacts: Vec<Contact> = found.iter().filter_map(|(_, contact)| *contact).collect();
+        self.watched = found.into_iter().map(|(candidate, _)| candidate).collect();
         self.each_plane(|particle, plane, normal| {
             let points = [particle, plane.points[0]];
-            contacts.extend(Contact::with_plane(points, normal, bodies, paths));
+            contacts.extend(Contact::with_plane(points, normal, &self.bodies, &self.paths));
         });
         contacts.par_iter_mut().for_each(|contact| contact.stiffen(inverse_masses, h));
         self.contacts = contacts;
@@ -212,95 +235,6 @@ impl Contacts {
             });
             pressure[0] = (pressure[0] - pressure[1] * along.sum::<f64>()).max(0.0);
         });
-    }
-
-    /// Cuts the ways to these positions (m) short where they would lead through anything, and returns how many were.
-    pub(crate) fn truncate(&mut self, ends: &mut Coordinates) -> u32 {
-        self.paths.set_ends(ends);
-        let wanted = self.paths.step.clone();
-        let mut cutting = Vec::new();
-        let paths = &self.paths;
-        self.each_plane(|particle, plane, normal| {
-            let origin = paths.end(plane.points[0]);
-            let gap = normal.dot(&(paths.end(particle) - origin));
-            if paths.is_free(particle) && gap < truncation::LEAST {
-                let offset = normal.dot(&origin) + truncation::LEAST;
-                cutting.push(HalfSpace { point: particle, normal, offset });
-            }
-        });
-        let mut is_changed = vec![false; self.bodies.particle_count];
-        let mut is_stopped = is_changed.clone();
-        self.shorten(&mut cutting, &wanted, &is_stopped, &mut is_changed);
-        let mut is_first = true;
-        for round in 0..ROUNDS {
-            self.fit(|body| body.radius + truncation::MOST);
-            let Self { bodies, paths, .. } = &*self;
-            let changed = (!is_first).then_some(&is_changed[..]);
-            let cuts =
-                self.search(changed, |candidate, found| found.extend(cut(&candidate, bodies, paths)));
-            if cuts.is_empty() {
-                break;
-            }
-            is_first = false;
-            is_changed.fill(false);
-            for cut in &cuts {
-                let candidate: &Candidate = match cut {
-                    Cut::Plane { candidate, .. } if round < SLIDING_ROUNDS => {
-                        half_spaces(cut, &self.paths, |half_space| cutting.push(half_space));
-                        candidate
-                    }
-                    Cut::Plane { candidate, .. } | Cut::Stop { candidate } => {
-                        for &point in &candidate.points {
-                            if self.paths.is_free(point) {
-                                is_stopped[point as usize] = true;
-                            }
-                        }
-                        candidate
-                    }
-                };
-                for &point in &candidate.points {
-                    if self.paths.is_free(point) {
-                        is_changed[point as usize] = true;
-                    }
-                }
-            }
-            self.shorten(&mut cutting, &wanted, &is_stopped, &mut is_changed);
-        }
-        self.write_ends(&wanted, ends)
-    }
-
-    /// Ends points where their half-spaces let them.
-    fn shorten(
-        &mut self,
-        half_spaces: &mut [HalfSpace],
-        wanted: &[Vector],
-        is_stopped: &[bool],
-        is_changed: &mut [bool],
-    ) {
-        half_spaces.sort_by_key(|half_space| half_space.point);
-        for own in half_spaces.chunk_by(|one, other| one.point == other.point) {
-            let point = own[0].point as usize;
-            let start = self.paths.start[point];
-            let step = half_space::end_within(&start, start + wanted[point], own) - start;
-            is_changed[point] = is_changed[point] || step != self.paths.step[point];
-            self.paths.step[point] = step;
-        }
-        for (point, _) in is_stopped.iter().enumerate().filter(|(_, is_stopped)| **is_stopped) {
-            self.paths.step[point] = Vector::zeros();
-        }
-    }
-
-    /// Writes the ends of ways that are not as they were wanted.
-    fn write_ends(&mut self, wanted: &[Vector], ends: &mut Coordinates) -> u32 {
-        let mut clipped = 0;
-        for (point, wanted) in wanted[..self.bodies.particle_count].iter().enumerate() {
-            if self.paths.step[point] != *wanted {
-                ends.set(point, &self.paths.end(point as u32));
-                clipped += 1;
-            }
-        }
-        self.clipped += clipped;
-        clipped
     }
 
     /// Calls `visit` with each particle and each plane that it may touch, and the plane's normal at the end of the step.

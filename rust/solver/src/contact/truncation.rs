@@ -1,109 +1,156 @@
-//! No way goes through anything: ways are cut short by planes between the features that would meet.
+//! No way goes through anything: ways are cut short by planes between the features that would meet ([`super::cut`]).
 //!
-//! Two features A and B, closest along n, are safe if
+//! Points go as near to where they want as their planes let them ([`super::half_space`]), which may bring them near
+//! others: those are looked for in rounds, until there are none. Planes stay, so rounds end; after some, what still is
+//! not safe stays where it started.
 //!
-//! ```text
-//! min_A n·(x + step) - max_B n·(x + step) >= need        need = clamp(d/10, 0.5 µm, 20 µm)
-//! ```
-//!
-//! for on straight ways the gap along n is concave in time, and not less than at the start or at the end. The direction at
-//! the end and the one between both are tried too. What is not safe gets a plane across n: between the wanted ends, but
-//! inside the gap of the start, so that both sides start on their side and can always stay there. Before a collider,
-//! which goes its way whatever comes, the plane is where the collider ends.
-//!
-//! Points then go as near to where they want as their planes let them ([`super::half_space`]), which may bring them near
-//! others: those are looked for in rounds, until there are none. Planes stay, so rounds end; after the last, what still
-//! is not safe stays where it started.
-//!
-//! Source: Chen et al. 2023 (planar divide and truncate) for planes; the test and the rounds are our own.
+//! Where the step was expected to lead is known from detection, and with it all candidates that may meet on ways that differ
+//! from those by no more than the thickness of the cloth. Only what strays farther is looked for again.
 
 use boucle_geometry::Vector;
+use rayon::prelude::*;
 
-use super::bodies::Bodies;
+use super::Contacts;
 use super::candidate::Candidate;
-use super::half_space::HalfSpace;
-use super::paths::Paths;
+use super::cut::{Cut, LEAST, MOST, cut, half_spaces};
+use super::half_space::{HalfSpace, end_within};
+use crate::state::Coordinates;
 
 /// Rounds of cutting.
-pub(super) const ROUNDS: usize = 24;
+const ROUNDS: usize = 24;
 
 /// Rounds after which what is not safe no longer moves.
-pub(super) const SLIDING_ROUNDS: usize = 12;
+const SLIDING_ROUNDS: usize = 12;
 
-/// Gap (m) that must be left: more than positions lose when they are stored in single precision near the origin.
-pub(super) const LEAST: f64 = 5e-7;
-pub(super) const MOST: f64 = 2e-5;
+/// Candidates that one task checks, at the least.
+const CANDIDATES: usize = 256;
 
-/// Rounding (m) of gaps, far below those that must be left.
-const ROUNDING: f64 = 1e-12;
-
-/// A direction along which features are less than this part of their distance apart is ill-defined.
-const CLEAR: f64 = 0.7;
-
-/// What is to be done about two features.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Cut {
-    /// Keep the first feature beyond a plane, and the second feature before it.
-    Plane { candidate: Candidate, normal: Vector, offsets: [f64; 2] },
-    /// Keep all points where they are.
-    Stop { candidate: Candidate },
+/// What has been cut so far.
+struct Cutting {
+    half_spaces: Vec<HalfSpace>,
+    /// The ways (m) that were asked for.
+    wanted: Vec<Vector>,
+    is_stopped: Vec<bool>,
+    /// Points whose ways are no longer those that were last checked.
+    is_changed: Vec<bool>,
 }
 
-/// What must be done so that two features do not meet; nothing if they are safe.
-pub(super) fn cut(candidate: &Candidate, bodies: &Bodies, paths: &Paths) -> Option<Cut> {
-    let (first, second) = candidate.points.split_at(candidate.split());
-    let radius = bodies.body(first[0]).radius + bodies.body(second[0]).radius;
-    let gap = |normal: &Vector, place_of: &dyn Fn(u32) -> Vector| {
-        let along = |point: &u32| normal.dot(&place_of(*point));
-        let near = first.iter().map(along).fold(f64::INFINITY, f64::min);
-        let far = second.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
-        [near, far + radius]
-    };
-    let start_of = |point: u32| paths.start[point as usize];
-    let end_of = |point: u32| paths.end(point);
-    let offset = candidate.closest(start_of).offset;
-    let length = offset.norm();
-    let distance = length - radius;
-    let normal = offset / length;
-    let [near, far] = gap(&normal, &start_of);
-    if !(near - far >= CLEAR * distance && near - far > 0.0) {
-        return Some(Cut::Stop { candidate: *candidate });
+impl Contacts {
+    /// Cuts the ways to these positions (m) short where they would lead through anything, and returns how many were.
+    pub(crate) fn truncate(&mut self, ends: &mut Coordinates) -> u32 {
+        let mut safe = std::mem::take(&mut self.safe);
+        safe.clone_from(&self.paths.step);
+        self.paths.set_ends(ends);
+        let count = self.bodies.particle_count;
+        let changes = self.paths.step[..count].iter().zip(&safe);
+        let mut cutting = Cutting {
+            half_spaces: Vec::new(),
+            wanted: self.paths.step.clone(),
+            is_stopped: vec![false; count],
+            is_changed: changes.map(|(step, safe)| !self.is_safe || step != safe).collect(),
+        };
+        self.safe = safe;
+        if cutting.is_changed.contains(&true) {
+            self.stay_before_planes(&mut cutting);
+            for round in 0..ROUNDS {
+                let cuts = self.cuts(&cutting.is_changed);
+                if cuts.is_empty() {
+                    break;
+                }
+                self.take_up(&cuts, round < SLIDING_ROUNDS, &mut cutting);
+            }
+        }
+        self.is_safe = true;
+        self.write_ends(&cutting.wanted, ends)
     }
-    let need = (0.1 * distance).clamp(LEAST, MOST).min(near - far);
-    let [wanted_near, wanted_far] = gap(&normal, &end_of);
-    if wanted_near - wanted_far >= need - ROUNDING {
-        return None;
-    }
-    let other = candidate.closest(end_of).offset.normalize();
-    let is_safe = |normal: Vector| {
-        let [near, far] = gap(&normal, &start_of);
-        let [wanted_near, wanted_far] = gap(&normal, &end_of);
-        (near - far).min(wanted_near - wanted_far) >= need - ROUNDING
-    };
-    if is_safe(other) || is_safe((normal + other).normalize()) {
-        return None;
-    }
-    let offsets = if second.iter().all(|&point| !paths.is_free(point)) {
-        [wanted_far + need, f64::NEG_INFINITY]
-    } else if first.iter().all(|&point| !paths.is_free(point)) {
-        [f64::INFINITY, wanted_near - radius - need]
-    } else {
-        let half = 0.5 * need;
-        let middle = 0.5 * (wanted_near + wanted_far);
-        let middle = middle.max(far + half).min(near - half);
-        [middle + half, middle - half]
-    };
-    Some(Cut::Plane { candidate: *candidate, normal, offsets })
-}
 
-/// The half-spaces of a cut.
-pub(super) fn half_spaces(cut: &Cut, paths: &Paths, mut add: impl FnMut(HalfSpace)) {
-    let Cut::Plane { candidate, normal, offsets: [near, far] } = cut else { return };
-    let (first, second) = candidate.points.split_at(candidate.split());
-    for &point in first.iter().filter(|&&point| paths.is_free(point)) {
-        add(HalfSpace { point, normal: *normal, offset: *near });
+    /// Adds the half-spaces of planes that particles would end behind.
+    fn stay_before_planes(&mut self, cutting: &mut Cutting) {
+        let paths = &self.paths;
+        self.each_plane(|particle, plane, normal| {
+            let origin = paths.end(plane.points[0]);
+            let gap = normal.dot(&(paths.end(particle) - origin));
+            if paths.is_free(particle) && gap < LEAST {
+                let offset = normal.dot(&origin) + LEAST;
+                cutting.half_spaces.push(HalfSpace { point: particle, normal, offset });
+            }
+        });
+        self.shorten(cutting);
     }
-    for &point in second.iter().filter(|&&point| paths.is_free(point)) {
-        add(HalfSpace { point, normal: -normal, offset: -far });
+
+    /// The cuts that ways need of which some have changed.
+    fn cuts(&mut self, is_changed: &[bool]) -> Vec<Cut> {
+        let is_concerned = |candidate: &Candidate| {
+            candidate.points.iter().any(|&point| is_changed.get(point as usize) == Some(&true))
+        };
+        let Self { bodies, paths, watched, expected, .. } = &*self;
+        let watched = watched.par_iter().with_min_len(CANDIDATES);
+        let cuts = watched.filter(|candidate| is_concerned(candidate));
+        let mut cuts: Vec<Cut> =
+            cuts.filter_map(|candidate| cut(candidate, bodies, paths)).collect();
+        let is_astray = |(point, is_changed): (usize, &bool)| {
+            let slack = bodies.body(point as u32).thickness - MOST;
+            *is_changed && (paths.step[point] - expected[point]).norm_squared() > slack * slack
+        };
+        let is_astray: Vec<bool> = is_changed.iter().enumerate().map(is_astray).collect();
+        if is_astray.contains(&true) {
+            self.fit(|body| body.radius + MOST);
+            let Self { bodies, paths, .. } = &*self;
+            cuts.extend(self.search(Some(&is_astray), |candidate, found| {
+                found.extend(cut(&candidate, bodies, paths));
+            }));
+        }
+        cuts
+    }
+
+    /// Takes cuts up: with their planes, if points may still slide along them.
+    fn take_up(&mut self, cuts: &[Cut], may_slide: bool, cutting: &mut Cutting) {
+        cutting.is_changed.fill(false);
+        for cut in cuts {
+            let is_plane = matches!(cut, Cut::Plane { .. });
+            if is_plane && may_slide {
+                let half_spaces_so_far = &mut cutting.half_spaces;
+                half_spaces(cut, &self.paths, |half_space| half_spaces_so_far.push(half_space));
+                continue;
+            }
+            for &point in &cut.candidate().points {
+                if self.paths.is_free(point) {
+                    cutting.is_stopped[point as usize] = true;
+                }
+            }
+        }
+        self.shorten(cutting);
+    }
+
+    /// Ends points where their half-spaces let them, and marks those that end elsewhere now.
+    fn shorten(&mut self, cutting: &mut Cutting) {
+        let Cutting { half_spaces, wanted, is_stopped, is_changed } = cutting;
+        half_spaces.sort_by_key(|half_space| half_space.point);
+        for own in half_spaces.chunk_by(|one, other| one.point == other.point) {
+            let point = own[0].point as usize;
+            let start = self.paths.start[point];
+            let step = end_within(&start, start + wanted[point], own) - start;
+            is_changed[point] = is_changed[point] || step != self.paths.step[point];
+            self.paths.step[point] = step;
+        }
+        let stopped = is_stopped.iter().enumerate().filter(|(_, is_stopped)| **is_stopped);
+        for (point, _) in stopped {
+            let step = &mut self.paths.step[point];
+            is_changed[point] = is_changed[point] || *step != Vector::zeros();
+            *step = Vector::zeros();
+        }
+    }
+
+    /// Writes the ends of ways that are not as they were wanted.
+    fn write_ends(&mut self, wanted: &[Vector], ends: &mut Coordinates) -> u32 {
+        let mut clipped = 0;
+        for (point, wanted) in wanted[..self.bodies.particle_count].iter().enumerate() {
+            if self.paths.step[point] != *wanted {
+                ends.set(point, &self.paths.end(point as u32));
+                clipped += 1;
+            }
+        }
+        self.clipped += clipped;
+        clipped
     }
 }

@@ -32,6 +32,13 @@ const CLEARLY: f64 = 0.9;
 /// a swinging sheet snaps taut.
 const FAR_TOO_FEW: f64 = 2.0;
 
+/// The most steps of a frame that errors ask for where cloth touches something: what it does then depends on its finest
+/// folds, and no number of steps makes it converge.
+const MOST_IN_CONTACT: u32 = 6;
+
+/// The longest way (m) that colliders and cloth go towards each other in a step.
+const LONGEST_WAY: f64 = 0.15;
+
 /// What the choice depends on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Accuracy {
@@ -39,13 +46,16 @@ pub(crate) struct Accuracy {
     pub(crate) tolerance: f64,
     /// Of the cloths (m): root mean square distance from their middle.
     pub(crate) size: f64,
+    /// Whether anything touches.
+    pub(crate) is_in_contact: bool,
 }
 
 impl Accuracy {
     /// Steps after a frame of so many with a mean error (m).
     pub(crate) fn after(self, substeps: u32, error: f64) -> u32 {
         let wanted = f64::from(substeps) * (error / (SCALE * self.tolerance * self.size)).cbrt();
-        let count = at_least(wanted);
+        let most = if self.is_in_contact { MOST_IN_CONTACT } else { u32::MAX };
+        let count = at_least(wanted).min(most);
         if count < substeps && wanted > CLEARLY * f64::from(count) { substeps } else { count }
     }
 
@@ -60,10 +70,11 @@ impl Accuracy {
         at_least(0.5 * change * duration / (PIN_SCALE * self.tolerance * self.size))
     }
 
-    /// Steps of a frame, given those that the last one asks for; 0 for none.
-    pub(crate) fn plan(self, asked: u32, change: f64, duration: f64) -> u32 {
+    /// Steps of a frame, given those that the last one asks for; 0 for none. `way` is how far (m) colliders and cloth go
+    /// towards each other at the most.
+    pub(crate) fn plan(self, asked: u32, change: f64, way: f64, duration: f64) -> u32 {
         let asked = if asked == 0 { FIRST } else { asked };
-        asked.max(self.for_pins(change, duration))
+        asked.max(self.for_pins(change, duration)).max(at_least(way / LONGEST_WAY))
     }
 }
 
@@ -77,7 +88,7 @@ fn at_least(wanted: f64) -> u32 {
 mod tests {
     use super::*;
 
-    const ACCURACY: Accuracy = Accuracy { tolerance: 5e-3, size: 1.0 };
+    const ACCURACY: Accuracy = Accuracy { tolerance: 5e-3, size: 1.0, is_in_contact: false };
 
     #[test]
     fn the_error_allowed_keeps_the_number_of_steps() {
@@ -103,8 +114,16 @@ mod tests {
     #[test]
     fn a_pin_that_jumps_takes_more_steps_and_one_that_rests_none() {
         let duration = 1.0 / 24.0;
-        assert_eq!(ACCURACY.plan(0, 0.0, duration), FIRST);
-        assert_eq!(ACCURACY.plan(3, 0.0, duration), 3);
-        assert!(ACCURACY.plan(3, 20.0, duration) >= 8);
+        assert_eq!(ACCURACY.plan(0, 0.0, 0.0, duration), FIRST);
+        assert_eq!(ACCURACY.plan(3, 0.0, 0.0, duration), 3);
+        assert!(ACCURACY.plan(3, 20.0, 0.0, duration) >= 8);
+    }
+
+    #[test]
+    fn what_comes_fast_takes_more_steps_and_what_touches_no_more_than_a_few() {
+        assert_eq!(ACCURACY.plan(3, 0.0, 2.5, 1.0 / 24.0), 24);
+        let touching = Accuracy { is_in_contact: true, ..ACCURACY };
+        assert_eq!(touching.after(4, f64::INFINITY), MOST_IN_CONTACT);
+        assert_eq!(touching.again(4, f64::INFINITY), None);
     }
 }

@@ -6,6 +6,7 @@ use super::Simulation;
 use crate::certificate::length;
 use crate::cloth::Cloth;
 use crate::error::{Error, Result};
+use crate::implicit::Accuracy;
 use crate::integrator::explicit;
 use crate::limit::Limit;
 use crate::settings::{MOST_SUBSTEPS, StepSize};
@@ -78,7 +79,8 @@ impl Simulation {
         };
         if let (Some(memory), None) = (self.method.memory(), asked) {
             let change = self.pins.largest_change(&self.state, duration);
-            return Ok(self.accuracy.plan(memory.substeps, change, duration));
+            let way = self.contacts.longest_way(&self.state.velocity, duration);
+            return Ok(self.accuracy.plan(memory.substeps, change, way, duration));
         }
         if let Some(count) = asked
             && (self.settings.allow_unstable || self.method.is_implicit())
@@ -96,10 +98,16 @@ impl Simulation {
         }
     }
 
+    /// How exact a frame is after which things touch as they do now.
+    pub(super) fn accuracy_now(&self) -> Accuracy {
+        Accuracy { is_in_contact: self.contacts.count() > 0, ..self.accuracy }
+    }
+
     /// Steps with which the frame just run is to be done once more, if it is.
     pub(super) fn plan_again(&self, substeps: u32) -> Option<u32> {
         let memory = self.method.memory().filter(|_| self.settings.step_size == StepSize::Auto)?;
-        self.accuracy.again(substeps, memory.mean_error(substeps))
+        let accuracy = self.accuracy_now();
+        accuracy.again(substeps, memory.mean_error(substeps))
     }
 }
 

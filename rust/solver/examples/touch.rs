@@ -26,7 +26,7 @@ fn main() {
             colliders.push(col("ball", Shape::Sphere{radius:0.5}, vec![Vector::new(0.0,0.0,-0.6)])); }
         _ => {}
     }
-    let settings = Settings { integrator: if env("IE",0)==1 { IntegratorKind::ImplicitEuler } else { IntegratorKind::Bdf2 }, perturbation: 1e-6, threads: env("THREADS",2), step_size: match env("SUB",0u32) {0=>StepSize::Auto, k=>StepSize::Substeps(k)}, ..Default::default() };
+    let settings = Settings { integrator: if env("IE",0)==1 { IntegratorKind::ImplicitEuler } else if env("SE",0)==1 { IntegratorKind::SymplecticEuler } else { IntegratorKind::Bdf2 }, perturbation: 1e-6, threads: env("THREADS",2), step_size: match env("SUB",0u32) {0=>StepSize::Auto, k=>StepSize::Substeps(k)}, ..Default::default() };
     let mut sim = Simulation::with_colliders(cloths, colliders, vec![], settings).unwrap();
     let mut total = 0.0;
     for f in 0..frames {

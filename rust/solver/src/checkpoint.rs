@@ -3,6 +3,7 @@
 //! ```text
 //! "BOUCLECK" | version u32 | digest u64 | frame i32 | substeps u32 | particles u64
 //! | positions and velocities, f64, axis by axis | pinned, a byte each
+//! | points of colliders u64 | their positions, f64, point by point
 //! | implicit integrators only: edges u64 | substeps u32 | step f64 | error f64
 //! |     positions and velocities before | tension f64 of each edge
 //! | XXH3-64 of all before
@@ -10,6 +11,7 @@
 //!
 //! All little-endian.
 
+use boucle_geometry::Vector;
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::error::{Error, Result};
@@ -17,7 +19,7 @@ use crate::implicit::Memory;
 use crate::state::State;
 
 const MAGIC: &[u8; 8] = b"BOUCLECK";
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const HEADER: usize = 36;
 
 /// What a checkpoint holds.
@@ -29,6 +31,8 @@ pub(crate) struct Checkpoint {
     pub(crate) substeps: u32,
     pub(crate) state: State,
     pub(crate) is_pinned: Vec<bool>,
+    /// Where the points of colliders are (m).
+    pub(crate) colliders: Vec<Vector>,
     pub(crate) memory: Option<Memory>,
 }
 
@@ -44,6 +48,9 @@ impl Checkpoint {
         bytes.extend_from_slice(&(count as u64).to_le_bytes());
         write_state(&mut bytes, &self.state);
         bytes.extend(self.is_pinned.iter().map(|&is_pinned| u8::from(is_pinned)));
+        bytes.extend_from_slice(&(self.colliders.len() as u64).to_le_bytes());
+        let numbers = self.colliders.iter().flatten();
+        bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
         if let Some(memory) = &self.memory {
             bytes.extend_from_slice(&(memory.tensions.len() as u64).to_le_bytes());
             bytes.extend_from_slice(&memory.substeps.to_le_bytes());
@@ -68,7 +75,7 @@ impl Checkpoint {
             return Err(damaged());
         }
         if reader.take().map(u32::from_le_bytes) != Some(VERSION) {
-            return Err(Error::BadCheckpoint("is of another version; accepted: version 2"));
+            return Err(Error::BadCheckpoint("is of another version; accepted: version 3"));
         }
         Self::read_body(&mut reader).ok_or_else(damaged)
     }
@@ -85,8 +92,17 @@ impl Checkpoint {
         let (pins, rest) = reader.0.split_at(count);
         reader.0 = rest;
         let is_pinned = pins.iter().map(|&byte| byte != 0).collect();
-        let memory = if rest.is_empty() { None } else { Some(Self::read_memory(reader, count)?) };
-        reader.0.is_empty().then_some(Self { digest, frame, substeps, state, is_pinned, memory })
+        let colliders = reader.vectors()?;
+        let memory = if reader.0.is_empty() { None } else { Some(Self::read_memory(reader, count)?) };
+        reader.0.is_empty().then_some(Self {
+            digest,
+            frame,
+            substeps,
+            state,
+            is_pinned,
+            colliders,
+            memory,
+        })
     }
 
     fn read_memory(reader: &mut Reader<'_>, count: usize) -> Option<Memory> {
@@ -126,6 +142,16 @@ impl Reader<'_> {
         usize::try_from(u64::from_le_bytes(self.take()?)).ok()
     }
 
+    fn vectors(&mut self) -> Option<Vec<Vector>> {
+        let count = self.count()?;
+        if self.0.len() < count.checked_mul(24)? {
+            return None;
+        }
+        (0..count)
+            .map(|_| Some(Vector::new(self.number()?, self.number()?, self.number()?)))
+            .collect()
+    }
+
     fn state(&mut self, count: usize) -> Option<State> {
         let mut state = State::zeros(count);
         for axis in state.position.0.iter_mut().chain(&mut state.velocity.0) {
@@ -139,8 +165,6 @@ impl Reader<'_> {
 
 #[cfg(test)]
 mod tests {
-    use boucle_geometry::Vector;
-
     use super::*;
 
     fn checkpoint() -> Checkpoint {
@@ -148,8 +172,8 @@ mod tests {
         let mut memory = Memory::new(&state, 3);
         (memory.tensions[1], memory.step, memory.substeps) = (2.5, 0.01, 4);
         let is_pinned = vec![true, false];
-        let memory = Some(memory);
-        Checkpoint { digest: 7, frame: -3, substeps: 9, state, is_pinned, memory }
+        let (colliders, memory) = (vec![Vector::new(1.5, -2.0, 1e-9)], Some(memory));
+        Checkpoint { digest: 7, frame: -3, substeps: 9, state, is_pinned, colliders, memory }
     }
 
     #[test]

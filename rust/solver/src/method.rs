@@ -1,7 +1,7 @@
 //! What moves the particles by a step: a rule that needs nothing but the state, or one that remembers.
 
 use crate::cloth::Cloth;
-use crate::contact::Contacts;
+use crate::contact::{Contacts, Response};
 use crate::implicit::{Implicit, Memory, Rule};
 use crate::integrator::{Integrator, Scratch, explicit};
 use crate::settings::{IntegratorKind, Settings};
@@ -10,7 +10,7 @@ use crate::system::System;
 
 /// An integrator with its memory.
 pub(crate) enum Method {
-    Explicit(&'static dyn Integrator, Box<Scratch>),
+    Explicit(&'static dyn Integrator, Box<Scratch>, Box<Response>),
     Implicit(Box<Implicit>),
 }
 
@@ -22,7 +22,8 @@ impl Method {
         state: &State,
     ) -> Self {
         if let Some(rule) = explicit(settings.integrator) {
-            return Self::Explicit(rule, Box::new(Scratch::new(state)));
+            let response = Box::new(Response::new(state.len()));
+            return Self::Explicit(rule, Box::new(Scratch::new(state)), response);
         }
         let rule = match settings.integrator {
             IntegratorKind::Bdf2 => Rule::Bdf2,
@@ -76,7 +77,7 @@ impl Method {
         h: f64,
     ) {
         match self {
-            Self::Explicit(rule, scratch) => rule.step(system, state, scratch, h),
+            Self::Explicit(rule, scratch, _) => rule.step(system, state, scratch, h),
             Self::Implicit(implicit) => implicit.step(system, state, contacts, h),
         }
     }

@@ -295,12 +295,13 @@ impl Simulation {
         }
         self.pins.start(&mut self.state, duration);
         let Self { system, pins, contacts, limits, state, method, threads, .. } = self;
+        let stride = plan::stride(method, contacts.longest_way(&state.velocity, duration), substeps);
         // No pass has work for more.
         let others = state.len() / CHUNK;
         threads.install(|| {
             with_others_awake(others, || {
                 (1..=substeps).find_map(|substep| {
-                    let step = Step { system, pins, h, number: substep, count: substeps };
+                    let step = Step { system, pins, h, number: substep, count: substeps, stride };
                     step.run(state, method, contacts, limits);
                     if watches || substep == substeps { first_lost(state) } else { None }
                 })
@@ -388,6 +389,7 @@ impl Simulation {
             substeps: self.substeps_taken,
             state: self.state.clone(),
             memory: self.method.memory().cloned(),
+            colliders: self.contacts.collider_positions().to_vec(),
             is_pinned: (0..count).map(|particle| self.system.is_pinned(particle)).collect(),
         };
         checkpoint.to_bytes()
@@ -399,7 +401,10 @@ impl Simulation {
     /// [`Error::BadCheckpoint`] when it is damaged or of other cloths or settings.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let checkpoint = Checkpoint::from_bytes(bytes)?;
-        if checkpoint.digest != self.digest || checkpoint.state.len() != self.state.len() {
+        if checkpoint.digest != self.digest
+            || checkpoint.state.len() != self.state.len()
+            || checkpoint.colliders.len() != self.contacts.collider_positions().len()
+        {
             return Err(Error::BadCheckpoint(
                 "is of another scene or other settings; accepted: the one that it was made from",
             ));
@@ -407,6 +412,7 @@ impl Simulation {
         if let (Some(memory), Some(restored)) = (self.method.memory_mut(), checkpoint.memory) {
             *memory = restored;
         }
+        self.contacts.place_colliders(&checkpoint.colliders);
         self.state = checkpoint.state;
         self.frame = checkpoint.frame;
         self.substeps_taken = checkpoint.substeps;

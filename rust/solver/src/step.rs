@@ -30,6 +30,8 @@ pub(crate) struct Step<'a> {
     /// Its number in its frame, from 1, and how many there are.
     pub(crate) number: u32,
     pub(crate) count: u32,
+    /// So many steps meet contacts together: one, or several explicit ones.
+    pub(crate) stride: u32,
 }
 
 impl Step<'_> {
@@ -42,13 +44,22 @@ impl Step<'_> {
         limits: &mut [Limit],
     ) {
         let is_last = self.number == self.count;
-        contacts.start_step(self.number, self.count, &state.position);
+        let done = self.number - 1;
+        if !contacts.is_empty() && done % self.stride == 0 {
+            let end = (done + self.stride).min(self.count);
+            contacts.start_step([done, end], self.count, &state.position);
+        }
+        let meets = !contacts.is_empty() && (is_last || self.number % self.stride == 0);
         method.step(self.system, state, contacts, self.h);
+        if let (Method::Explicit(.., response), true) = (&mut *method, meets) {
+            let steps = done % self.stride + 1;
+            response.respond(self.system, state, contacts, f64::from(steps) * self.h);
+        }
         if is_last {
             self.pins.arrive(state);
         }
         let mut is_held = self.limit(state, method, limits, is_last);
-        if contacts.is_empty() {
+        if !meets {
             return;
         }
         let mut clipped = contacts.truncate(&mut state.position);

@@ -8,7 +8,7 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::{Bvh, Pack, Sweep, WIDTH};
+use super::{Bvh, WIDTH};
 
 /// Packs of one task.
 const TASK: usize = 32;
@@ -149,8 +149,12 @@ impl<T, V: Fn(u32, u32, &mut Vec<T>)> Search<'_, T, V> {
             return;
         }
         let [own, other] = [&self.own.levels[0][pack], &self.other.levels[0][place]];
-        for lane in 0..WIDTH {
-            let mut bits = meeting(own, lane, other);
+        // Most items of two packs whose hulls meet are beside the other hull.
+        let mut near = own.meets(&self.other.levels[1][place / WIDTH].get(place % WIDTH));
+        while near != 0 {
+            let lane = near.trailing_zeros() as usize;
+            near &= near - 1;
+            let mut bits = other.meets(&own.get(lane));
             if is_same && place == pack {
                 bits &= all << (lane + 1);
             }
@@ -165,10 +169,4 @@ impl<T, V: Fn(u32, u32, &mut Vec<T>)> Search<'_, T, V> {
             }
         }
     }
-}
-
-#[inline(always)]
-fn meeting(own: &Pack, lane: usize, other: &Pack) -> u32 {
-    let sweep: Sweep = own.get(lane);
-    other.meets(&sweep)
 }

@@ -18,6 +18,7 @@ mod friction;
 mod half_space;
 mod intersections;
 mod paths;
+mod response;
 mod search;
 mod matrix;
 mod cut;
@@ -35,6 +36,7 @@ use candidate::Candidate;
 use contact::{Contact, Near};
 use features::Trees;
 use paths::Paths;
+pub(crate) use response::Response;
 pub(crate) use matrix::ContactMatrix;
 
 /// Everything that touches, and how.
@@ -137,17 +139,17 @@ impl Contacts {
         from.copy_from_slice(to);
     }
 
-    /// Starts a step of several of a frame, with particles at these positions (m).
-    pub(crate) fn start_step(&mut self, step: u32, count: u32, positions: &Coordinates) {
+    /// Starts a step over a part of a frame, from and to, of so many parts, with particles at these positions (m).
+    pub(crate) fn start_step(&mut self, part: [u32; 2], count: u32, positions: &Coordinates) {
         self.paths.set_starts(positions);
         let at = |step: u32| f64::from(step) / f64::from(count);
         let [from, to] = &self.frame;
         let ways = from.iter().zip(to).enumerate();
         for (index, (from, to)) in ways {
             let point = self.bodies.particle_count + index;
-            let [start, end] = [at(step - 1), at(step)].map(|part| from + part * (to - from));
+            let [start, end] = part.map(|part| from + at(part) * (to - from));
             // What arrives is exactly there.
-            let end = if step == count { *to } else { end };
+            let end = if part[1] == count { *to } else { end };
             (self.paths.start[point], self.paths.step[point]) = (start, end - start);
         }
         self.origins.copy_from_slice(&self.paths.start);

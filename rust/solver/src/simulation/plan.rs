@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::implicit::Accuracy;
 use crate::integrator::explicit;
 use crate::limit::Limit;
+use crate::method::Method;
 use crate::settings::{MOST_SUBSTEPS, StepSize};
 use crate::stability::stiffening;
 use crate::system::System;
@@ -109,6 +110,19 @@ impl Simulation {
         let accuracy = self.accuracy_now();
         accuracy.again(substeps, memory.mean_error(substeps))
     }
+}
+
+/// Parts of a frame after which explicit steps meet contacts, at the least, and the longest way (m) that colliders and
+/// cloth go towards each other in one.
+const MEETINGS: f64 = 8.0;
+const LONGEST_WAY: f64 = 0.15;
+
+/// After how many steps contacts are met, if colliders and cloth go so far (m) towards each other over a frame.
+pub(super) fn stride(method: &Method, way: f64, substeps: u32) -> u32 {
+    if method.is_implicit() {
+        return 1;
+    }
+    (f64::from(substeps) / MEETINGS.max(way / LONGEST_WAY)).floor().max(1.0) as u32
 }
 
 /// Root mean square distance (m) of the particles from the middle of their cloth.

@@ -60,6 +60,7 @@ def test_a_certificate_is_a_row_of_the_report_without_seconds(simulation):
         "max_shear_strain",
         "intersections",
         "clipped",
+        "contacts",
         "kinetic_energy",
         "potential_energy",
         "hash",

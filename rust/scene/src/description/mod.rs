@@ -115,12 +115,13 @@ impl Scene {
         self.collision.check()?;
         let colliders =
             self.collider.iter().map(|collider| collider.name.as_str()).collect::<Vec<_>>();
-        check_names("collider", &colliders)?;
+        check_names("collider", &colliders, |name| (*name).to_owned(), "")?;
         for collider in &self.collider {
             collider.check(&format!("collider.{}", collider.name))?;
         }
         let cloths = self.cloth.iter().map(|cloth| cloth.name.as_str()).collect::<Vec<_>>();
-        check_names("cloth", &cloths)?;
+        // Some systems take file names that differ by case alone for one.
+        check_names("cloth", &cloths, |name| name.to_lowercase(), ", whatever its case")?;
         for cloth in &self.cloth {
             let at = format!("cloth.{}", cloth.name);
             cloth.check(&at)?;
@@ -134,11 +135,11 @@ impl Scene {
     }
 }
 
-/// Refuses a name that stands twice in a list, whatever its case: some systems take two such file names for one.
-fn check_names(list: &str, names: &[&str]) -> Result<()> {
+/// Refuses a name that stands twice in a list, as `folded` sees it.
+fn check_names(list: &str, names: &[&str], folded: fn(&&str) -> String, how: &str) -> Result<()> {
     for (index, name) in names.iter().enumerate() {
-        if names[..index].iter().any(|other| other.to_lowercase() == name.to_lowercase()) {
-            let accepted = format!("a name that no other {list} has, whatever its case");
+        if names[..index].iter().any(|other| folded(other) == folded(name)) {
+            let accepted = format!("a name that no other {list} has{how}");
             let key = format!("{list}.{index}.name");
             return Err(Error::refuse(&key, format!("\"{name}\""), &accepted));
         }

@@ -72,8 +72,8 @@ impl Assembly {
             Simulation::with_colliders(cloths, colliders, winds, settings(scene, threads))
                 .map_err(solver)?;
         for (index, description) in scene.cloth.iter().enumerate() {
-            if description.velocity != [0.0; 3] {
-                let velocity = Vector::from(description.velocity);
+            let velocity = Vector::from(description.velocity);
+            if velocity.norm_squared() > 0.0 {
                 let count = simulation.cloth(index).positions.len();
                 simulation.set_velocities(index, &vec![velocity; count]);
             }

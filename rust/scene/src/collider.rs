@@ -77,7 +77,9 @@ impl RestCollider {
         if let Shape::Mesh(mesh) = &self.shape {
             for face in mesh.faces() {
                 hash.update(&(face.len() as u64).to_le_bytes());
-                face.iter().for_each(|corner| hash.update(&corner.to_le_bytes()));
+                for corner in face {
+                    hash.update(&corner.to_le_bytes());
+                }
             }
         }
         if let Some(samples) = &self.samples {

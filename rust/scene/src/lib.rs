@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! SCENE.toml -> description -> assembly -> bake -> NAME.pc2, NAME.obj, report.json, checkpoint
-//!     --set ->  (keys typed     (meshes, pins,
+//!     --set ->  (keys typed     (meshes, pins, colliders,
 //!               and checked)     simulation)
 //! ```
 //! Every refusal is an [`Error`] of one line that names the file, the key, the value and what is accepted.

@@ -141,8 +141,10 @@ mod tests {
     #[test]
     fn points_go_straight_between_samples_and_rest_before_and_after_them() {
         let samples = read(&cache(10.0, 2.0, &[1.0, 3.0, 2.0]), 1).expect("a good cache");
-        let heights = [0, 10, 11, 12, 13, 14, 99].map(|frame| samples.at(frame)[0].z);
-        assert_eq!(heights, [1.0, 1.0, 2.0, 3.0, 2.5, 2.0, 2.0]);
+        let expected = [(0, 1.0), (10, 1.0), (11, 2.0), (12, 3.0), (13, 2.5), (14, 2.0), (99, 2.0)];
+        for (frame, height) in expected {
+            assert_eq!(samples.at(frame), [Vector::new(1.0, 0.0, height)], "frame {frame}");
+        }
         let single = read(&cache(1.0, 1.0, &[5.0]), 1).expect("a good cache");
         assert_eq!(single.at(7), [Vector::new(1.0, 0.0, 5.0)]);
     }

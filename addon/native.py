@@ -64,14 +64,19 @@ def problem() -> str:
     return ""
 
 
-def simulation(scene: str, meshes: Sequence[tuple[Any, Any, Any]], threads: int = 0) -> Any:
+def simulation(
+    scene: str,
+    meshes: Sequence[tuple[Any, Any, Any]],
+    threads: int = 0,
+    colliders: Sequence[tuple[Any, Any, Any]] = (),
+) -> Any:
     """A new simulation; see `boucle_core.Simulation`.
 
     Raises:
         Refusal: The module cannot be used.
-        BoucleError: The scene or a mesh is not accepted.
+        BoucleError: The scene, a mesh or a collider is not accepted.
     """
     if problem():
         raise Refusal(problem())
     make: Callable[..., Any] = _core.Simulation
-    return make(scene, meshes, threads)
+    return make(scene, meshes, threads, colliders)

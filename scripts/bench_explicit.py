@@ -144,6 +144,7 @@ def simulation(sheet: Sheet, threads: int) -> boucle_core.Simulation:
     scene = {
         "scene": {"frames": [1, 1000], "fps": 24, "gravity": [0.0, 0.0, sheet.gravity]},
         "cloth": [cloth],
+        "collision": {"enabled": False},
         "solver": {"integrator": "symplectic_euler", "substeps": STEPS_PER_FRAME},
     }
     positions = np.ascontiguousarray(sheet.rest_positions().reshape(3, -1).T)

@@ -20,6 +20,9 @@ def line(row: Row) -> str:
     if row["iterations"]:
         parts.append(_count(row["iterations"], "iteration"))
     parts.append(_count(row["substeps"], "substep"))
+    crossings = row.get("intersections")
+    if crossings is not None:
+        parts.append(_count(crossings, "intersection") if crossings else "no intersections")
     kinetic, potential = row["kinetic_energy"], row["potential_energy"]
     if kinetic is not None and potential is not None:
         parts.append(f"energy {kinetic + potential:.3g} J")

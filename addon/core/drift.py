@@ -16,6 +16,7 @@ _WORDS = {
     "bend": "bend stiffness",
     "mass_per_vertex": "mass per vertex",
     "name": "",
+    "self": "self collision",
 }
 
 

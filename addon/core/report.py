@@ -50,8 +50,9 @@ class Report:
 def joined(reports: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """One report of several cloths, each simulated by itself.
 
-    A frame's row holds the largest strain, the worst edges, substeps of the cloth that took most, and sums of everything else;
-    its hash is a 64-bit BLAKE2b digest of the cloths' hashes, in order. The report of a single cloth is left as it is.
+    A frame's row holds the largest strain, the worst edges, substeps of the cloth that took most, and sums of everything else
+    (of intersections: over the cloths that collide); its hash is a 64-bit BLAKE2b digest of the cloths' hashes, in order. The
+    report of a single cloth is left as it is.
     """
     if len(reports) == 1:
         return dict(reports[0])
@@ -87,6 +88,9 @@ def _joined_row(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         elif key == "hash":
             digest = hashlib.blake2b("".join(map(str, values)).encode(), digest_size=8)
             out[key] = values[0] if len(values) == 1 else f"blake2b-64:{digest.hexdigest()}"
+        elif key == "intersections":
+            counted = [value for value in values if value is not None]
+            out[key] = sum(counted) if counted else None
         elif None in values:
             out[key] = None
         else:

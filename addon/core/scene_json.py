@@ -32,13 +32,29 @@ class Groups(NamedTuple):
     wind: Sequence[int] | None
 
 
+class CollisionObject(NamedTuple):
+    """An object that cloth collides with, by the numbers of its Collision physics; its mesh goes beside the scene."""
+
+    name: str
+    thickness_outer: float
+    """What is kept free around it (m), beside the cloth's own thickness."""
+    cloth_friction: float
+    """A hundred times the coefficient of friction, 0 to 80."""
+
+
 def decimal(value: float) -> float:
     """A float32 property as the decimal that the user typed: 0.1, not 0.10000000149011612."""
     return float(f"{value:.7g}")
 
 
-def describe(name: str, values: Values, world: World, groups: Groups) -> dict[str, Any]:
-    """The scene of one cloth, its mesh apart."""
+def describe(
+    name: str,
+    values: Values,
+    world: World,
+    groups: Groups,
+    colliders: Sequence[CollisionObject] = (),
+) -> dict[str, Any]:
+    """The scene of one cloth among colliders, without any mesh."""
     frames = [int(values["frame_start"]), int(values["frame_end"])]
     if frames[1] < frames[0]:
         raise Refusal(
@@ -57,6 +73,8 @@ def describe(name: str, values: Values, world: World, groups: Groups) -> dict[st
     force = _wind(values, groups.wind)
     if force:
         scene["force"] = [force]
+    if colliders:
+        scene["collider"] = [collider(thing) for thing in colliders]
     return scene
 
 
@@ -73,7 +91,25 @@ def _cloth(name: str, values: Values, pins: Sequence[int]) -> dict[str, Any]:
         cloth["mass_per_vertex"] = decimal(values["mass_per_vertex"])
     if pins:
         cloth["pins"] = {"vertices": list(pins)}
+    cloth["collision"] = collision(values)
     return cloth
+
+
+def collision(values: Values) -> dict[str, Any]:
+    """How a cloth collides; not at all where its settings do not tell."""
+    if "self_collision" not in values:
+        return {"enabled": False}
+    numbers = {key: decimal(values[key]) for key in ("thickness", "friction")}
+    return {"self": bool(values["self_collision"]), **numbers}
+
+
+def collider(thing: CollisionObject) -> dict[str, Any]:
+    """One collider, whose mesh is given beside the scene."""
+    return {
+        "name": thing.name,
+        "thickness": decimal(thing.thickness_outer),
+        "friction": decimal(thing.cloth_friction / 100.0),
+    }
 
 
 def _springs(values: Values) -> dict[str, Any]:

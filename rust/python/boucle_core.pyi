@@ -43,14 +43,20 @@ class Simulation:
         scene: str,
         meshes: Sequence[tuple[Buffer, Buffer, Buffer]],
         threads: int = 0,
+        colliders: Sequence[tuple[Buffer, Buffer, Buffer]] = (),
     ) -> Simulation:
-        """Build a simulation at the scene's first frame, at rest. The scene's `transform`, pin `motion` and `release` hold.
+        """Build a simulation at the scene's first frame, at rest but for the scene's `velocity`.
+
+        The scene's `transform`, pin `motion` and `release`, and the `motion` of its colliders hold.
 
         Args:
-            scene: The scene file's keys as a JSON object, but `grid` and `mesh` of each cloth stand in `meshes`.
+            scene: The scene file's keys as a JSON object, but `grid` and `mesh` of each cloth stand in `meshes`, and `mesh`
+                and `cache` of a collider in `colliders` and `set_collider_targets`.
             meshes: For each cloth, in the scene's order: rest positions (m), float32 or float64 (n, 3), world space;
                 the first corner of each face, int32 (f,) or (f + 1,); the vertex of each corner, int32 (c,).
             threads: 0 takes every core.
+            colliders: The same arrays for each collider of the scene that has no `sphere`, `plane`, `box` or `capsule`, in the
+                scene's order: where it stands at the first frame.
 
         Raises:
             SceneError: A key, a value or a mesh is not accepted.
@@ -60,6 +66,8 @@ class Simulation:
     def frame(self) -> int: ...
     @property
     def cloth_names(self) -> list[str]: ...
+    @property
+    def collider_names(self) -> list[str]: ...
     @property
     def safe_time_step(self) -> float:
         """Largest step (s) that is stable with this integrator and that the limiter keeps up with; 0 if there is none.
@@ -73,6 +81,9 @@ class Simulation:
 
     def vertex_count(self, cloth: int) -> int: ...
     def spring_count(self, cloth: int) -> int: ...
+    def collider_point_count(self, collider: int) -> int:
+        """How many points a collider has: those of its mesh, 1 of a sphere, 2 of a plane or capsule, 8 of a box."""
+
     def set_positions(self, cloth: int, positions: Buffer) -> None:
         """Put the vertices at positions (m), float32 or float64 (n, 3), at rest; the rest lengths stay."""
 
@@ -83,6 +94,15 @@ class Simulation:
             cloth: Its number.
             targets: Positions (m), float32 or float64 (n, 3), for *all* vertices of the cloth, of which only the pinned
                 are read. Where the scene moves the pins of this cloth itself (`motion`), the scene's targets hold.
+        """
+
+    def set_collider_targets(self, collider: int, targets: Buffer) -> None:
+        """Say where the points of a collider go: they reach it in straight lines at the end of the next frame, and rest there.
+
+        Args:
+            collider: Its number.
+            targets: Positions (m), float32 or float64 (n, 3), world space, for all points of the collider. Where the scene
+                moves it itself (`motion`), the scene's targets hold.
         """
 
     def release_pins(self, cloth: int, vertices: Sequence[int] | None = None) -> None:

@@ -73,7 +73,10 @@ class Recipe:
             "springs": springs,
         }
         scene = {"frames": [1, FOREVER], "fps": self.fps}
-        return json.dumps({"scene": scene, "cloth": [cloth], "solver": solver})
+        touches_nothing = {"enabled": False}
+        return json.dumps(
+            {"scene": scene, "cloth": [cloth], "collision": touches_nothing, "solver": solver}
+        )
 
     def words(self, *leave_out: str) -> str:
         """Its numbers for a caption, without those that the figure varies."""

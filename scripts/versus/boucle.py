@@ -38,6 +38,7 @@ def simulation(
     scene = {
         "scene": {"frames": [1, 1_000_000], "fps": FPS},
         "cloth": [cloth],
+        "collision": {"enabled": False},
         "solver": solver or {},
     }
     starts = np.arange(0, sheet.faces.size, 4, dtype=np.int32)

@@ -32,6 +32,7 @@ def solver(integrator="symplectic_euler", **springs):
             "name": "A", "density": 0.2, "pins": {"vertices": [20, 24]},
             "springs": {"stretch": 500.0, "damping": 0.01, **springs},
         }],
+        "collision": {"enabled": False},
         "solver": {"integrator": integrator, "substeps": 400, "allow_unstable": True},
     }  # fmt: skip
     return boucle_core.Simulation(scene_json.encode(scene), [grid()], 1)

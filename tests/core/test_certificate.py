@@ -1,3 +1,4 @@
+import pytest
 from boucle_addon.core import certificate
 
 ROW = {
@@ -20,6 +21,14 @@ def test_what_does_not_exist_is_left_out():
     assert "stretch beyond all numbers" in certificate.line({**ROW, "max_strain": None})
     assert "stretch 0.0 % (" in certificate.line({**ROW, "max_strain": -1e-9})
     assert "hash 0123abcd…" in certificate.line({**ROW, "hash": "xxh3-64:0123abcd456789ef"})
+    assert certificate.line({**ROW, "intersections": None}) == certificate.line(ROW)
+
+
+@pytest.mark.parametrize(
+    ("count", "words"), [(0, "no intersections"), (1, "1 intersection"), (7, "7 intersections")]
+)
+def test_the_intersections_of_a_cloth_that_collides_are_told(count, words):
+    assert f", 4 substeps, {words}, energy" in certificate.line({**ROW, "intersections": count})
 
 
 def test_a_warning_names_how_many_edges_and_the_worst():

@@ -8,7 +8,7 @@ from boucle_addon.core.report import Report
 def row(frame, **values):
     return {
         "frame": frame, "substeps": 3, "iterations": 0, "max_strain": 0.1, "p99_strain": 0.05,
-        "intersections": None, "clipped": 0, "kinetic_energy": 1.0, "potential_energy": 2.0,
+        "intersections": None, "clipped": 0, "contacts": 0, "kinetic_energy": 1.0, "potential_energy": 2.0,
         "hash": "xxh3-64:0", **values,
     }  # fmt: skip
 
@@ -59,6 +59,15 @@ def test_reports_of_several_cloths_are_joined_frame_by_frame():
     assert middle["max_strain"] == 0.1 and middle["intersections"] is None
     assert middle["hash"].startswith("blake2b-64:") and both["frames"][0]["hash"] == "xxh3-64:0"
     assert both["total_seconds"] == 1.0
+
+
+def test_a_joined_report_counts_the_intersections_of_those_cloths_that_collide():
+    one = made("A", [row(1), row(2, intersections=0, contacts=3)]).as_dict()
+    two = made("B", [row(1), row(2, intersections=2, contacts=4)]).as_dict()
+    three = made("C", [row(1), row(2)]).as_dict()
+    rows = report.joined([one, two, three])["frames"]
+    assert [r["intersections"] for r in rows] == [None, 2]
+    assert [r["contacts"] for r in rows] == [0, 7]
 
 
 def test_a_joined_report_names_the_worst_edges_of_all_cloths():

@@ -5,7 +5,7 @@ import boucle_core
 import pytest
 from boucle_addon.core import scene_json
 from boucle_addon.core.refusal import Refusal
-from boucle_addon.core.scene_json import Groups, World
+from boucle_addon.core.scene_json import CollisionObject, Groups, World
 
 VALUES = {
     "frame_start": 1, "frame_end": 50, "mass_mode": "density", "density": 0.2, "mass_per_vertex": 0.1,
@@ -21,15 +21,18 @@ WORLD = World((0.0, 0.0, -9.8100004196167), 24.0)
 GROUPS = Groups([2, 3], None)
 
 
-def described(world=WORLD, groups=GROUPS, **changes):
-    return scene_json.describe("Cloth", {**VALUES, **changes}, world, groups)
+COLLIDING = {"self_collision": True, "thickness": 0.0049999998882, "friction": 0.30000001192}
 
 
-def simulation(scene):
+def described(world=WORLD, groups=GROUPS, colliders=(), **changes):
+    return scene_json.describe("Cloth", {**VALUES, **changes}, world, groups, colliders)
+
+
+def simulation(scene, colliders=()):
     """The solver on a quad of 1 m."""
     positions = array("d", [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0])
     mesh = (positions, array("i", [0]), array("i", [0, 1, 2, 3]))
-    return boucle_core.Simulation(scene_json.encode(scene), [mesh])
+    return boucle_core.Simulation(scene_json.encode(scene), [mesh], colliders=colliders)
 
 
 def test_numbers_are_those_that_the_user_typed():
@@ -81,6 +84,24 @@ def test_pins_and_wind_are_there_only_if_they_act():
     assert "force" not in described(use_wind=True, groups=Groups([], []))
 
 
+def test_a_cloth_collides_as_its_settings_say_and_without_them_not_at_all():
+    assert described()["cloth"][0]["collision"] == {"enabled": False}
+    collision = described(**COLLIDING)["cloth"][0]["collision"]
+    assert collision == {"self": True, "thickness": 0.005, "friction": 0.3}
+    collision = described(**{**COLLIDING, "self_collision": False})["cloth"][0]["collision"]
+    assert collision["self"] is False
+
+
+def test_the_friction_of_a_collision_object_is_a_hundredth_of_blenders():
+    assert "collider" not in described()
+    body = CollisionObject("Body", 0.019999999552965164, 5.0)
+    scene = described(colliders=[body], **COLLIDING)
+    assert scene["collider"] == [{"name": "Body", "thickness": 0.02, "friction": 0.05}]
+    below = array("d", [0, 0, -1, 1, 0, -1, 0, 1, -1])
+    solver = simulation(scene, [(below, array("i", [0]), array("i", [0, 1, 2]))])
+    assert solver.collider_names == ["Body"]
+
+
 def test_contradictions_are_refused():
     with pytest.raises(Refusal, match=r"Substeps is 3 and Time Step is 0\.01 s"):
         described(substeps=3, time_step=0.01)
@@ -99,6 +120,8 @@ def test_contradictions_are_refused():
         {"use_wind": True},
         {"use_wind": True, "wind_law": "face"},
         {"frame_start": -10, "frame_end": -10},
+        COLLIDING,
+        {**COLLIDING, "self_collision": False, "friction": 0.0},
         *({"limiter": name} for name in ("none", "stiffen", "provot", "project")),
         *(
             {"integrator": name, "damping": 0.0 if name == "leapfrog" else 0.01}

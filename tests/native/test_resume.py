@@ -21,6 +21,9 @@ pins = ["top_left", { names = ["top_right"], motion = [
 
 [cloth.springs]
 damping = 0.01
+
+[collision]
+enabled = false
 """
 
 

@@ -1,8 +1,20 @@
 """The scenes in tests/scenes are what they say they are."""
 
+import re
+import shutil
 import struct
+from pathlib import Path
 
+import boucle_core
 import numpy as np
+import pytest
+
+import scene_meshes
+
+SCENES = Path(__file__).resolve().parents[1] / "scenes"
+FILES = sorted(path.name for path in SCENES.glob("*.toml"))
+ONE_SIZE = {"curtain.toml", "layers.toml", "numpy_demo.toml", "pinned2.toml", "pinned4.toml"}
+"""Scenes that name no full size."""
 
 AFTER_TWO_SECONDS = {
     0: (-0.0292366, -0.2852436, -0.0004073),
@@ -25,3 +37,43 @@ def test_the_numpy_demonstration_is_the_system_that_the_solver_is_validated_with
     for vertex, expected in AFTER_TWO_SECONDS.items():
         # The unevenness of a millionth of an edge has grown no larger than float32 tells apart.
         assert np.abs(upright[vertex] - expected).max() < 2e-6, (vertex, upright[vertex])
+
+
+def first_frame(scene, out, overrides=()):
+    """The report of a scene that ends with its first frame."""
+    return boucle_core.bake(str(scene), str(out), overrides=[*overrides, "scene.frames=[1, 1]"])
+
+
+def overrides_in(text):
+    """The overrides that the comment at a scene's head names as its full size."""
+    heads = ("# Full size:", "#   --set")
+    lines = [line for line in text.splitlines() if line.startswith(heads)]
+    return [word for line in lines for word in re.findall(r"--set (\S+)", line)]
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_every_scene_can_be_simulated_and_begins_without_intersections(name, tmp_path):
+    report = first_frame(SCENES / name, tmp_path)
+    (row,) = report["frames"]
+    assert row["intersections"] in (None, 0)
+    assert row["max_strain"] < 1e-6
+    assert all(cloth["vertices"] <= 2500 for cloth in report["cloths"])
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_the_full_size_that_a_scene_names_can_be_simulated(name, tmp_path):
+    overrides = overrides_in((SCENES / name).read_text())
+    if not overrides:
+        assert name in ONE_SIZE
+        return
+    shutil.copytree(SCENES, tmp_path / "scenes")
+    for file, content in scene_meshes.files(full=True).items():
+        (tmp_path / "scenes" / file).write_bytes(content)
+    small = first_frame(SCENES / name, tmp_path / "small")["cloths"]
+    full = first_frame(tmp_path / "scenes" / name, tmp_path / "full", overrides)["cloths"]
+    assert sum(cloth["vertices"] for cloth in full) > sum(cloth["vertices"] for cloth in small)
+
+
+def test_the_meshes_of_the_scenes_are_those_that_the_script_makes():
+    for name, content in scene_meshes.files(full=False).items():
+        assert (SCENES / name).read_bytes() == content, name

@@ -60,6 +60,7 @@ def test_a_certificate_is_a_row_of_the_report_without_seconds(simulation):
         "max_shear_strain",
         "intersections",
         "clipped",
+        "contacts",
         "kinetic_energy",
         "potential_energy",
         "hash",
@@ -236,7 +237,10 @@ def test_springs_and_strain_are_read_with_their_kinds_and_lengths(simulation, sh
 
 def test_several_cloths_are_told_apart_by_their_number(make_sheet):
     small, large = make_sheet(3), make_sheet(5)
-    scene = {"cloth": [{"name": "small"}, {"name": "large", "pins": {"vertices": [0]}}]}
+    scene = {
+        "collision": {"enabled": False},
+        "cloth": [{"name": "small"}, {"name": "large", "pins": {"vertices": [0]}}],
+    }
     simulation = boucle_core.Simulation(json.dumps(scene), [small.mesh(), large.mesh()])
     assert simulation.cloth_names == ["small", "large"]
     assert [simulation.vertex_count(cloth) for cloth in (0, 1)] == [9, 25]

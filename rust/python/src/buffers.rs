@@ -174,6 +174,10 @@ fn floats(py: Python<'_>, buffer: &PyUntypedBuffer, what: &str) -> PyResult<Vec<
 
 /// The numbers of a buffer, if they are of this type.
 fn read<T: Element>(py: Python<'_>, buffer: &PyUntypedBuffer) -> PyResult<Option<Vec<T>>> {
+    // An empty buffer points nowhere, which PyO3 takes for numbers of another type.
+    if buffer.item_count() == 0 {
+        return Ok(Some(Vec::new()));
+    }
     match buffer.as_typed::<T>() {
         Ok(buffer) => buffer.to_vec(py).map(Some),
         Err(_) => Ok(None),

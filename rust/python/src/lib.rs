@@ -2,6 +2,7 @@
 //!
 //! - `boundary`: the one place where errors, panics and threads meet the interpreter
 //! - `buffers`: arrays in and out, by the buffer protocol
+//! - `meshes`: meshes of cloths and colliders out of such arrays
 //! - `simulation`: the class `Simulation`
 //! - `bake`: the function `bake`
 //! - `geometry`: distances, collisions and intersections of many features at once
@@ -14,6 +15,7 @@ mod bake;
 mod boundary;
 mod buffers;
 mod geometry;
+mod meshes;
 mod simulation;
 
 use pyo3::prelude::*;

@@ -1,17 +1,14 @@
 //! The class `Simulation`.
 
-use boucle_geometry::{Mesh, Vector};
 use boucle_scene::report::FrameRow;
-use boucle_scene::{Assembly, Error, RestMesh, Scene};
-use boucle_solver::{Certificate, Cloth};
+use boucle_scene::{Assembly, Error, Scene};
+use boucle_solver::{Certificate, Cloth, Collider};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::boundary::{compute, raise, raise_internal, refuse};
 use crate::buffers;
-
-/// One cloth's mesh as Python gives it: positions, face starts, corners.
-type MeshArrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Bound<'py, PyAny>);
+use crate::meshes::{self, MeshArrays};
 
 /// The bytes of a cloth's springs: ends, kinds, rest lengths, stiffnesses, dampings.
 type SpringBytes<'py> = (
@@ -32,35 +29,23 @@ pub(crate) struct Simulation {
 #[pymethods]
 impl Simulation {
     #[new]
-    #[expect(clippy::needless_pass_by_value, reason = "Python's sequence is taken apart into it")]
-    #[pyo3(signature = (scene, meshes, threads = 0))]
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "Python's sequences are taken apart into them"
+    )]
+    #[pyo3(signature = (scene, meshes, threads = 0, colliders = Vec::new()))]
     fn new(
         py: Python<'_>,
         scene: &str,
         meshes: Vec<MeshArrays<'_>>,
         threads: i64,
+        colliders: Vec<MeshArrays<'_>>,
     ) -> PyResult<Self> {
         let scene = compute(py, || Scene::from_json(scene))?;
         let threads = thread_count(py, threads)?;
-        if meshes.len() != scene.cloth.len() {
-            let (given, wanted) = (meshes.len(), scene.cloth.len());
-            return Err(refuse(
-                py,
-                format!("meshes holds {given}; accepted: {wanted}, one a cloth"),
-            ));
-        }
-        let mut rest_meshes = Vec::with_capacity(meshes.len());
-        for (cloth, arrays) in scene.cloth.iter().zip(&meshes) {
-            if cloth.grid.is_some() || cloth.mesh.is_some() {
-                let message =
-                    "grid or mesh; accepted: neither, as the mesh is given beside the scene";
-                return Err(refuse(py, format!("cloth.{}: {message}", cloth.name)));
-            }
-            let mut rest = rest_mesh(py, &cloth.name, arrays)?;
-            cloth.transform.place(&mut rest.positions);
-            rest_meshes.push(rest);
-        }
-        let assembly = compute(py, || Assembly::new(&scene, rest_meshes, threads))?;
+        let rest_meshes = meshes::of_cloths(py, &scene, &meshes)?;
+        let colliders = meshes::of_colliders(py, &scene, &colliders)?;
+        let assembly = compute(py, || Assembly::new(&scene, rest_meshes, colliders, threads))?;
         Ok(Self { assembly: Some(assembly) })
     }
 
@@ -74,6 +59,14 @@ impl Simulation {
         let simulation = &self.assembly(py)?.simulation;
         Ok((0..simulation.cloth_count())
             .map(|index| simulation.cloth(index).name.clone())
+            .collect())
+    }
+
+    #[getter]
+    fn collider_names(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let simulation = &self.assembly(py)?.simulation;
+        Ok((0..simulation.collider_count())
+            .map(|index| simulation.collider(index).name.clone())
             .collect())
     }
 
@@ -93,6 +86,10 @@ impl Simulation {
 
     fn spring_count(&self, py: Python<'_>, cloth: i64) -> PyResult<usize> {
         Ok(self.cloth(py, cloth)?.1.springs.len())
+    }
+
+    fn collider_point_count(&self, py: Python<'_>, collider: i64) -> PyResult<usize> {
+        Ok(self.collider(py, collider)?.1.positions.len())
     }
 
     fn set_positions(
@@ -125,6 +122,19 @@ impl Simulation {
             assembly.simulation.set_pin_targets(index, &targets);
             Ok(())
         })
+    }
+
+    fn set_collider_targets(
+        &mut self,
+        py: Python<'_>,
+        collider: i64,
+        targets: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let (index, rest) = self.collider(py, collider)?;
+        let count = rest.positions.len();
+        let targets = buffers::positions(targets, "targets", Some(count))?;
+        buffers::check_finite(py, &targets, 0..count, "targets")?;
+        self.with(py, |assembly| Ok(assembly.simulation.set_collider_targets(index, &targets)?))
     }
 
     #[pyo3(signature = (cloth, vertices = None))]
@@ -255,6 +265,22 @@ impl Simulation {
         self.assembly.as_ref().ok_or_else(|| broken(py))
     }
 
+    /// The collider of a number that Python gave.
+    fn collider(&self, py: Python<'_>, collider: i64) -> PyResult<(usize, &Collider)> {
+        let simulation = &self.assembly(py)?.simulation;
+        let count = simulation.collider_count();
+        match usize::try_from(collider) {
+            Ok(index) if index < count => Ok((index, simulation.collider(index))),
+            _ => {
+                let accepted = match count {
+                    0 => "none, as there are no colliders".to_owned(),
+                    _ => format!("0 to {}", count - 1),
+                };
+                Err(refuse(py, format!("collider = {collider}; accepted: {accepted}")))
+            }
+        }
+    }
+
     /// The cloth of a number that Python gave.
     fn cloth(&self, py: Python<'_>, cloth: i64) -> PyResult<(usize, &Cloth)> {
         let simulation = &self.assembly(py)?.simulation;
@@ -297,25 +323,6 @@ fn broken(py: Python<'_>) -> PyErr {
 /// JSON as Python objects.
 pub(crate) fn parse_json<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
     py.import("json")?.call_method1("loads", (text,))
-}
-
-/// The rest mesh of one cloth, from Python's arrays.
-fn rest_mesh(py: Python<'_>, name: &str, arrays: &MeshArrays<'_>) -> PyResult<RestMesh> {
-    let (positions, starts, corners) = arrays;
-    let at = |what: &str| format!("{what} of cloth \"{name}\"");
-    let positions: Vec<Vector> = buffers::positions(positions, &at("positions"), None)?;
-    let mut starts = buffers::indices(starts, &at("face starts"))?;
-    let corners = buffers::indices(corners, &at("face corners"))?;
-    // The end of the last face may be left out.
-    if starts.last().is_none_or(|&last| (last as usize) < corners.len()) {
-        starts.push(corners.len() as u32);
-    }
-    let count = positions.len();
-    let mesh = compute(py, || {
-        Mesh::new(count, starts, corners)
-            .map_err(|error| Error::Input(format!("cloth \"{name}\": {error}")))
-    })?;
-    Ok(RestMesh { mesh, positions, grid: None })
 }
 
 /// A cloth's springs as native-endian bytes.

@@ -1,8 +1,9 @@
-//! From a scene and rest meshes to a simulation whose pins follow the scene.
+//! From a scene and rest meshes to a simulation whose pins and colliders follow the scene.
 
 use boucle_geometry::{Aabb, Mesh, Vector};
 use boucle_solver::{Certificate, Cloth, Region, Settings, Simulation, Wind};
 
+use crate::collider::{ColliderTrack, RestCollider};
 use crate::description::{Choice, ClothDescription, Force, Grid, Scene};
 use crate::error::{Error, Result};
 use crate::limits;
@@ -19,43 +20,68 @@ pub struct RestMesh {
     pub grid: Option<Grid>,
 }
 
-/// A simulation and the pins that the scene moves and releases.
+/// A simulation, the pins that the scene moves and releases, and the colliders that it moves.
 pub struct Assembly {
     /// The cloths in motion.
     pub simulation: Simulation,
     tracks: Vec<PinTrack>,
+    collider_tracks: Vec<ColliderTrack>,
     first_frame: i32,
 }
 
 impl Assembly {
-    /// Builds a simulation at the scene's first frame, at rest, from a rest mesh for each cloth. `threads` of 0 takes
-    /// every core.
+    /// Builds a simulation at the scene's first frame, at rest, from a rest mesh for each cloth and the shape of each
+    /// collider. `threads` of 0 takes every core.
     ///
     /// # Errors
     /// [`Error::Input`] when the meshes, the pins or the numbers cannot be simulated.
-    pub fn new(scene: &Scene, meshes: Vec<RestMesh>, threads: usize) -> Result<Self> {
+    pub fn new(
+        scene: &Scene,
+        meshes: Vec<RestMesh>,
+        colliders: Vec<RestCollider>,
+        threads: usize,
+    ) -> Result<Self> {
         limits::threads(threads)?;
         if meshes.len() != scene.cloth.len() {
             return Err(Error::refuse("meshes", meshes.len(), &format!("{}", scene.cloth.len())));
+        }
+        if colliders.len() != scene.collider.len() {
+            let accepted = format!("{}", scene.collider.len());
+            return Err(Error::refuse("colliders", colliders.len(), &accepted));
         }
         let mut tracks = Vec::with_capacity(meshes.len());
         let mut cloths = Vec::with_capacity(meshes.len());
         for (description, rest) in scene.cloth.iter().zip(meshes) {
             let at = format!("cloth.{}", description.name);
             let track = PinTrack::new(&description.pins, &format!("{at}.pins"), &rest)?;
-            cloths.push(cloth(description, rest, track.vertices(), &at)?);
+            cloths.push(cloth(scene, description, rest, track.vertices(), &at)?);
             tracks.push(track);
         }
+        let first_frame = scene.scene.frames[0];
+        let (colliders, collider_tracks) = scene
+            .collider
+            .iter()
+            .zip(colliders)
+            .map(|(description, rest)| ColliderTrack::new(description, rest, first_frame))
+            .unzip();
         let forces = scene.force.iter().enumerate();
         let winds = forces
             .map(|(index, force)| wind(force, &format!("force.{index}")))
             .collect::<Result<_>>()?;
-        let simulation =
-            Simulation::new(cloths, winds, settings(scene, threads)).map_err(solver)?;
-        Ok(Self { simulation, tracks, first_frame: scene.scene.frames[0] })
+        let mut simulation =
+            Simulation::with_colliders(cloths, colliders, winds, settings(scene, threads))
+                .map_err(solver)?;
+        for (index, description) in scene.cloth.iter().enumerate() {
+            let velocity = Vector::from(description.velocity);
+            if velocity.norm_squared() > 0.0 {
+                let count = simulation.cloth(index).positions.len();
+                simulation.set_velocities(index, &vec![velocity; count]);
+            }
+        }
+        Ok(Self { simulation, tracks, collider_tracks, first_frame })
     }
 
-    /// Moves on by one frame, pins included.
+    /// Moves on by one frame, pins and colliders included.
     ///
     /// # Errors
     /// [`Error::Diverged`] or [`Error::Unstable`]; the state is then that of the last good frame.
@@ -64,10 +90,21 @@ impl Assembly {
         for (cloth, track) in self.tracks.iter().enumerate() {
             track.prepare(&mut self.simulation, cloth, frame, self.first_frame);
         }
-        self.simulation.advance().map_err(|error| match solver(error) {
+        let outcome = self.aim_colliders(frame).and_then(|()| self.simulation.advance());
+        outcome.map_err(|error| match solver(error) {
             Error::Input(reason) => Error::Unstable { frame: frame + 1, reason },
             other => other,
         })
+    }
+
+    /// Sets where the colliders that the scene moves are to be after `frame`.
+    fn aim_colliders(&mut self, frame: i32) -> boucle_solver::Result<()> {
+        for (collider, track) in self.collider_tracks.iter().enumerate() {
+            if let Some(targets) = track.at(frame + 1) {
+                self.simulation.set_collider_targets(collider, &targets)?;
+            }
+        }
+        Ok(())
     }
 }
 
@@ -96,18 +133,28 @@ fn settings(scene: &Scene, threads: usize) -> Settings {
 }
 
 fn cloth(
+    scene: &Scene,
     description: &ClothDescription,
     rest: RestMesh,
     pins: Vec<u32>,
     at: &str,
 ) -> Result<Cloth> {
+    let colliders: Vec<&str> =
+        scene.collider.iter().map(|collider| collider.name.as_str()).collect();
+    let collision = description.collision.collision(
+        &scene.collision,
+        &colliders,
+        rest.positions.len(),
+        &format!("{at}.collision"),
+    )?;
     let (mass, material) = (description.mass(), description.springs.material());
-    Cloth::from_mesh(&description.name, rest.mesh, rest.positions, &mass, material, pins).map_err(
-        |error| match error {
-            boucle_solver::Error::OutOfDomain { .. } => Error::input(format!("{at}.{error}")),
-            other => Error::from(other),
-        },
-    )
+    let made =
+        Cloth::from_mesh(&description.name, rest.mesh, rest.positions, &mass, material, pins);
+    let cloth = made.map_err(|error| match error {
+        boucle_solver::Error::OutOfDomain { .. } => Error::input(format!("{at}.{error}")),
+        other => Error::from(other),
+    })?;
+    Ok(Cloth { collision, ..cloth })
 }
 
 fn wind(force: &Force, at: &str) -> Result<Wind> {

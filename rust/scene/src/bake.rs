@@ -15,6 +15,7 @@ use xxhash_rust::xxh3::Xxh3;
 
 use crate::assembly::{Assembly, RestMesh, integrator_word};
 use crate::checkpoint::Checkpoint;
+use crate::collider::RestCollider;
 use crate::description::Scene;
 use crate::error::{Error, Result};
 use crate::report::{ClothRow, FrameRow, Head, Report};
@@ -121,8 +122,9 @@ impl Bake {
         let build = || {
             folder::check_names(&scene)?;
             let meshes = source::rest_meshes(&scene, beside)?;
-            let digest = digest(&scene, &meshes, [first_kept, last]);
-            Ok((Assembly::new(&scene, meshes, request.threads)?, digest))
+            let colliders = source::rest_colliders(&scene, beside)?;
+            let digest = digest(&scene, &meshes, &colliders, [first_kept, last]);
+            Ok((Assembly::new(&scene, meshes, colliders, request.threads)?, digest))
         };
         let (mut assembly, digest) = build().map_err(|error: Error| error.within(&place))?;
         let folder = Folder::make(&request.out)?;
@@ -225,8 +227,14 @@ fn head<'a>(scene: &Scene, place: &'a str, assembly: &Assembly, threads: usize) 
     }
 }
 
-/// A digest of everything that the result depends on: version, scene with its overrides, meshes, frames kept.
-fn digest(scene: &Scene, meshes: &[RestMesh], frames: [i32; 2]) -> u128 {
+/// A digest of everything that the result depends on: version, scene with its overrides, meshes, colliders with their caches,
+/// frames kept.
+fn digest(
+    scene: &Scene,
+    meshes: &[RestMesh],
+    colliders: &[RestCollider],
+    frames: [i32; 2],
+) -> u128 {
     let mut hash = Xxh3::new();
     hash.update(VERSION.as_bytes());
     // A checked scene holds only finite numbers and text, which JSON can always hold.
@@ -242,6 +250,9 @@ fn digest(scene: &Scene, meshes: &[RestMesh], frames: [i32; 2]) -> u128 {
                 hash.update(&vertex.to_le_bytes());
             }
         }
+    }
+    for collider in colliders {
+        collider.feed(&mut hash);
     }
     hash.update(frames.map(i32::to_le_bytes).as_flattened());
     hash.digest128()

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! SCENE.toml -> description -> assembly -> bake -> NAME.pc2, NAME.obj, report.json, checkpoint
-//!     --set ->  (keys typed     (meshes, pins,
+//!     --set ->  (keys typed     (meshes, pins, colliders,
 //!               and checked)     simulation)
 //! ```
 //! Every refusal is an [`Error`] of one line that names the file, the key, the value and what is accepted.
@@ -11,6 +11,7 @@ pub mod assembly;
 mod atomic;
 pub mod bake;
 pub mod checkpoint;
+mod collider;
 pub mod description;
 mod error;
 mod grid;
@@ -20,13 +21,16 @@ mod overrides;
 pub mod pc2;
 mod pins;
 pub mod report;
+mod samples;
 pub mod source;
 pub mod transform;
 
 pub use assembly::{Assembly, RestMesh};
+pub use collider::RestCollider;
 pub use description::Scene;
 pub use error::{Error, Result};
 pub use grid::PLACES;
+pub use samples::Samples;
 
 /// The version of Boucle, as reports name it.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -36,9 +36,7 @@ pub fn read(source: impl BufRead, up: UpAxis) -> Result<(Mesh, Vec<Vector>)> {
             .statement(&line, number)
             .map_err(|reason| Error::input(format!("line {number}: {reason}")))?;
     }
-    if let UpAxis::Y = up {
-        reader.positions.iter_mut().for_each(|v| *v = Vector::new(v.x, -v.z, v.y));
-    }
+    reader.positions.iter_mut().for_each(|v| *v = up.turned(*v));
     reader.finish()
 }
 

@@ -22,7 +22,8 @@ use crate::error::{Error, Result};
 
 const HEADER_BYTES: u64 = 32;
 const SAMPLE_COUNT_AT: u64 = 28;
-const MAGIC: &[u8; 12] = b"POINTCACHE2\0";
+/// How every file begins.
+pub(crate) const MAGIC: &[u8; 12] = b"POINTCACHE2\0";
 
 /// A PC2 file that is being written.
 #[derive(Debug)]

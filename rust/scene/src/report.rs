@@ -67,10 +67,12 @@ pub struct FrameRow {
     pub p99_strain: f64,
     /// Largest elongation of shear springs.
     pub max_shear_strain: f64,
-    /// Edge-triangle intersections; null until contact exists.
+    /// Edge-triangle intersections, exactly: of cloths with themselves, each other and colliders; null if nothing collides.
     pub intersections: Option<u64>,
-    /// Vertices whose motion contact cut short.
+    /// Vertices whose motion contact cut short, once for each step.
     pub clipped: u32,
+    /// Contacts at the end of the frame.
+    pub contacts: u32,
     /// Kinetic energy (J).
     pub kinetic_energy: f64,
     /// Energy of springs and of height (J).
@@ -102,8 +104,9 @@ impl FrameRow {
             max_strain: certificate.max_strain,
             p99_strain: certificate.p99_strain,
             max_shear_strain: certificate.max_shear_strain,
-            intersections: None,
+            intersections: certificate.intersections,
             clipped: certificate.clipped,
+            contacts: certificate.contacts,
             kinetic_energy: certificate.kinetic_energy,
             potential_energy: certificate.potential_energy,
             hash: format!("{:016x}", certificate.hash),
@@ -251,7 +254,9 @@ mod tests {
             max_strain: 0.1,
             p99_strain: f64::NAN,
             max_shear_strain: 0.0,
+            intersections: None,
             clipped: 0,
+            contacts: 0,
             kinetic_energy: 1.5,
             potential_energy: -2.0,
             hash: 0xab,
@@ -302,6 +307,7 @@ mod tests {
             "max_shear_strain",
             "intersections",
             "clipped",
+            "contacts",
             "kinetic_energy",
             "potential_energy",
             "hash",
@@ -310,5 +316,15 @@ mod tests {
         assert_eq!(keys, expected);
         let row = FrameRow::new(&certificate(7), None).to_json();
         assert!(!row.contains("seconds"));
+    }
+
+    #[test]
+    fn a_row_tells_how_cloth_touches() {
+        let touching =
+            Certificate { intersections: Some(0), clipped: 3, contacts: 5, ..certificate(7) };
+        let row = FrameRow::new(&touching, None).to_json();
+        let value: serde_json::Value = serde_json::from_str(&row).expect("strict JSON");
+        let numbers = ["intersections", "clipped", "contacts"].map(|key| value[key].as_u64());
+        assert_eq!(numbers, [Some(0), Some(3), Some(5)]);
     }
 }

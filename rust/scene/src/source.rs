@@ -5,10 +5,12 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use crate::assembly::RestMesh;
-use crate::description::{ClothDescription, Scene};
+use crate::collider::RestCollider;
+use crate::description::{ClothDescription, ColliderDescription, Scene};
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::obj;
+use crate::samples::Samples;
 
 /// Reads a scene file, changed by overrides (`key.path=value`).
 ///
@@ -56,6 +58,48 @@ fn rest_mesh(cloth: &ClothDescription, folder: &Path) -> Result<RestMesh> {
     let (mesh, positions) =
         obj::read(BufReader::new(file), cloth.up).map_err(|error| error.within(&place))?;
     Ok(RestMesh { mesh, positions, grid: None })
+}
+
+/// Reads or makes the shape of every collider; mesh files and caches are looked for in `folder`, that of the scene file.
+///
+/// # Errors
+/// [`Error::Input`] naming the key, the file and the line.
+pub fn rest_colliders(scene: &Scene, folder: &Path) -> Result<Vec<RestCollider>> {
+    let mut count = 0;
+    let mut colliders = Vec::with_capacity(scene.collider.len());
+    for collider in &scene.collider {
+        let rest = rest_collider(collider, folder)?;
+        count += rest.positions.len() as u64;
+        limits::vertices("the colliders together", count)?;
+        colliders.push(rest);
+    }
+    Ok(colliders)
+}
+
+fn rest_collider(collider: &ColliderDescription, folder: &Path) -> Result<RestCollider> {
+    let at = format!("collider.{}", collider.name);
+    if let Some(rest) = RestCollider::of_numbers(collider) {
+        return Ok(rest);
+    }
+    let Some(name) = &collider.mesh else {
+        let accepted = "one of sphere, plane, box, capsule, mesh";
+        return Err(Error::input(format!("{at} has no shape; accepted: {accepted}")));
+    };
+    let place = format!("{at}.mesh = \"{name}\"");
+    let file = open(&folder.join(name)).map_err(|error| error.within(&place))?;
+    let (mesh, positions) =
+        obj::read(BufReader::new(file), collider.up).map_err(|error| error.within(&place))?;
+    let mut rest = RestCollider::of_mesh(mesh, positions, collider)?;
+    if let Some(name) = &collider.cache {
+        let read = |file| {
+            let count = rest.positions.len();
+            Samples::read(BufReader::new(file), count, collider.up, &collider.transform)
+        };
+        let samples = open(&folder.join(name)).and_then(read);
+        rest.samples =
+            Some(samples.map_err(|error| error.within(&format!("{at}.cache = \"{name}\"")))?);
+    }
+    Ok(rest)
 }
 
 /// Opens a file that is to be read; a folder is refused.

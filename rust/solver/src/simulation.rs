@@ -1,6 +1,7 @@
 //! A simulation as the outside holds it: cloths that move frame by frame.
 
 mod plan;
+mod velocity;
 
 use std::fmt;
 

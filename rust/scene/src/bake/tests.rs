@@ -6,6 +6,8 @@ use crate::pc2;
 const SCENE: &str = r#"
 [scene]
 frames = [1, 12]
+[collision]
+enabled = false
 [[cloth]]
 name = "sheet"
 grid = { size = [1, 1], vertices = [6, 6], plane = "xy" }
@@ -301,4 +303,63 @@ grid = { size = [1, 1], vertices = [3, 3], plane = "xy" }
     whole(&place.request("out"));
     let text = String::from_utf8(place.bytes("out/report.json")).expect("text");
     assert!(!text.contains("overstretched"));
+}
+
+/// A scene of a sheet at a height of 9 m whose collider deforms by a cache.
+const COLLIDING: &str = r#"
+[scene]
+frames = [1, 4]
+[[cloth]]
+name = "sheet"
+grid = { size = [1, 1], vertices = [4, 4], plane = "xy", center = [0, 0, 9] }
+velocity = [0, 0, -2]
+pins = ["left"]
+[[collider]]
+name = "body"
+mesh = "body.obj"
+cache = "body.pc2"
+"#;
+
+fn colliding(heights: &[f64]) -> Place {
+    let place = Place::new(COLLIDING);
+    let folder = place.0.path();
+    std::fs::write(folder.join("body.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("room");
+    let mut cache = pc2::Writer::create(&folder.join("body.pc2"), 3, 1).expect("there is room");
+    for &z in heights {
+        let corners = [[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
+        cache.append(&corners.map(boucle_geometry::Vector::from)).expect("there is room");
+    }
+    place
+}
+
+#[test]
+fn a_checkpoint_is_bound_to_the_files_of_the_colliders() {
+    let place = colliding(&[8.95, 8.97, 8.99]);
+    stopped_at(&place.request("out"), 2);
+    let resumed = Request { resume: true, ..place.request("out") };
+    let other = colliding(&[8.95, 8.97, 8.98]);
+    std::fs::copy(other.0.path().join("body.pc2"), place.0.path().join("body.pc2")).expect("room");
+    let error = bake(&resumed, &mut |_| ControlFlow::Continue(())).expect_err("another cache");
+    assert!(error.to_string().contains("another scene"), "{error}");
+    let same = colliding(&[8.95, 8.97, 8.99]);
+    std::fs::copy(same.0.path().join("body.pc2"), place.0.path().join("body.pc2")).expect("room");
+    whole(&resumed);
+    whole(&place.request("whole"));
+    assert_eq!(place.hashes("out"), place.hashes("whole"));
+    let (_, numbers) = pc2::read(&place.0.path().join("whole/sheet.pc2")).expect("a cache");
+    assert!(numbers[3 * 48 + 3 * 10 + 2] > 9.0, "the body has thrown it up");
+}
+
+#[test]
+fn a_cloth_starts_with_its_velocity_but_for_its_pins() {
+    let place = colliding(&[0.0]);
+    let report = whole(&place.request("out"));
+    let row: serde_json::Value = serde_json::from_str(&report.rows()[0]).expect("strict JSON");
+    // 0.2 kg, of which the pinned row has a sixth, at 2 m/s.
+    let energy = row["kinetic_energy"].as_f64().expect("an energy");
+    assert!((energy - 0.5 * 0.2 * 5.0 / 6.0 * 4.0).abs() < 1e-12, "{energy}");
+    let (_, numbers) = pc2::read(&place.0.path().join("out/sheet.pc2")).expect("a cache");
+    // After one frame: 2 m/s and gravity for 1/24 s.
+    let fallen = 9.0 - f64::from(numbers[48 + 3 * 3 + 2]);
+    assert!((fallen - 2.0 / 24.0 - 0.5 * 9.81 / 576.0).abs() < 2e-3, "{fallen}");
 }

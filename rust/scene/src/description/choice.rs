@@ -146,12 +146,6 @@ later_table! {
         "stretch_warp", "stretch_weft", "shear", "bend_warp", "bend_weft", "damping_ratio",
         "deformation_rate", "preset",
     }
-    /// `[collision]`.
-    CollisionKeys { "self", "thickness", "friction" }
-    /// `[[collider]]`.
-    ColliderKeys {
-        "name", "sphere", "plane", "box", "capsule", "mesh", "friction", "motion", "cache",
-    }
     /// `[tear]`.
     TearKeys { "enabled", "force", "strain" }
 }

@@ -1,9 +1,11 @@
 //! `[[cloth]]`: its rest shape, mass, pins and springs.
 
+use boucle_geometry::Vector;
 use boucle_solver::{DampingLaw, Limiter, Mass, SpringMaterial, StiffnessFrom};
 use serde::{Deserialize, Serialize};
 
 use super::choice::{Choice, FabricKeys, Later, NotYet};
+use super::collision::ClothCollision;
 use super::pins::Pins;
 use super::table;
 use crate::error::{Error, Result};
@@ -13,6 +15,8 @@ use crate::limits;
 const DEFAULT_DENSITY: f64 = 0.2;
 /// Largest mass of a particle (kg) and areal density (kg/m²).
 const MAX_MASS: f64 = 1e6;
+/// Largest component of a velocity (m/s).
+const MAX_SPEED: f64 = 1e4;
 
 /// One cloth.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -38,6 +42,12 @@ pub struct ClothDescription {
     /// Vertices that do not move of themselves.
     #[serde(default)]
     pub pins: Pins,
+    /// Velocity (m/s) of every vertex at the first frame, but for those that are pinned.
+    #[serde(default)]
+    pub velocity: [f64; 3],
+    /// `[cloth.collision]`.
+    #[serde(default, deserialize_with = "table::one")]
+    pub collision: ClothCollision,
     /// Which model of cloth.
     #[serde(default, deserialize_with = "Choice::read", serialize_with = "Choice::write")]
     pub model: Model,
@@ -51,11 +61,6 @@ pub struct ClothDescription {
 }
 
 impl ClothDescription {
-    /// Whether two cloths would share a file name on a system that ignores case.
-    pub(super) fn has_name_of(&self, other: &Self) -> bool {
-        self.name.to_lowercase() == other.name.to_lowercase()
-    }
-
     /// The mass as the solver takes it.
     #[must_use]
     pub fn mass(&self) -> Mass {
@@ -89,6 +94,7 @@ impl ClothDescription {
         if let Some(mass) = self.mass_per_vertex {
             limits::above_zero(&format!("{at}.mass_per_vertex"), mass, MAX_MASS, " kg")?;
         }
+        limits::vector(&format!("{at}.velocity"), &self.velocity, MAX_SPEED, " m/s")?;
         self.pins.check(&format!("{at}.pins"))?;
         let material = self.springs.material();
         material.check().map_err(|error| Error::input(format!("{at}.{error}")))
@@ -166,6 +172,17 @@ pub enum UpAxis {
     Y,
 }
 
+impl UpAxis {
+    /// A point (m) of the file with z up.
+    #[must_use]
+    pub fn turned(self, point: Vector) -> Vector {
+        match self {
+            Self::Z => point,
+            Self::Y => Vector::new(point.x, -point.z, point.y),
+        }
+    }
+}
+
 impl Choice for UpAxis {
     const WORDS: &'static [(&'static str, Self)] = &[("z", Self::Z), ("y", Self::Y)];
 }
@@ -189,7 +206,7 @@ impl Default for Transform {
 }
 
 impl Transform {
-    fn check(&self, at: &str) -> Result<()> {
+    pub(super) fn check(&self, at: &str) -> Result<()> {
         limits::vector(&format!("{at}.location"), &self.location, limits::MAX_LENGTH, " m")?;
         limits::vector(&format!("{at}.rotation_deg"), &self.rotation_deg, 1e6, " degrees")?;
         limits::above_zero(&format!("{at}.scale"), self.scale, 1e6, "")

@@ -6,6 +6,8 @@
 
 mod choice;
 mod cloth;
+mod collider;
+mod collision;
 mod force;
 mod pins;
 mod solver;
@@ -13,8 +15,10 @@ mod table;
 mod tree;
 
 pub(crate) use choice::Choice;
-pub use choice::{ColliderKeys, CollisionKeys, FabricKeys, Later, LaterKeys, NotYet, TearKeys};
+pub use choice::{FabricKeys, Later, LaterKeys, NotYet, TearKeys};
 pub use cloth::{ClothDescription, Grid, Plane, Springs, Transform, UpAxis};
+pub use collider::{Capsule, ColliderDescription, Cuboid, HalfSpace, Sphere};
+pub use collision::{ClothCollision, CollisionDescription};
 pub use force::{Force, RegionDescription};
 pub use pins::{Keyframe, PinGroup, Pins};
 pub use solver::{SolverDescription, Substeps};
@@ -43,10 +47,12 @@ pub struct Scene {
     /// `[[force]]`.
     #[serde(default, deserialize_with = "table::list")]
     pub force: Vec<Force>,
-    /// `[collision]`, for later.
-    pub collision: Option<Later<CollisionKeys>>,
-    /// `[[collider]]`, for later.
-    pub collider: Option<Later<ColliderKeys>>,
+    /// `[collision]`.
+    #[serde(default, deserialize_with = "table::one")]
+    pub collision: CollisionDescription,
+    /// `[[collider]]`.
+    #[serde(default, deserialize_with = "table::list")]
+    pub collider: Vec<ColliderDescription>,
     /// `[tear]`, for later.
     pub tear: Option<Later<TearKeys>>,
 }
@@ -106,17 +112,20 @@ impl Scene {
         if self.cloth.is_empty() {
             return Err(Error::input("cloth is missing; accepted: one [[cloth]] or more"));
         }
-        for (index, cloth) in self.cloth.iter().enumerate() {
-            let twin = self.cloth[..index].iter().find(|other| other.has_name_of(cloth));
-            if twin.is_some() {
-                let accepted = "a name that no other cloth has, whatever its case";
-                return Err(Error::refuse(
-                    &format!("cloth.{index}.name"),
-                    format!("\"{}\"", cloth.name),
-                    accepted,
-                ));
-            }
-            cloth.check(&format!("cloth.{}", cloth.name))?;
+        self.collision.check()?;
+        let colliders =
+            self.collider.iter().map(|collider| collider.name.as_str()).collect::<Vec<_>>();
+        check_names("collider", &colliders, |name| (*name).to_owned(), "")?;
+        for collider in &self.collider {
+            collider.check(&format!("collider.{}", collider.name))?;
+        }
+        let cloths = self.cloth.iter().map(|cloth| cloth.name.as_str()).collect::<Vec<_>>();
+        // Some systems take file names that differ by case alone for one.
+        check_names("cloth", &cloths, |name| name.to_lowercase(), ", whatever its case")?;
+        for cloth in &self.cloth {
+            let at = format!("cloth.{}", cloth.name);
+            cloth.check(&at)?;
+            cloth.collision.check(&format!("{at}.collision"), &colliders)?;
         }
         self.solver.check(self.scene.fps)?;
         for (index, force) in self.force.iter().enumerate() {
@@ -124,6 +133,18 @@ impl Scene {
         }
         Ok(())
     }
+}
+
+/// Refuses a name that stands twice in a list, as `folded` sees it.
+fn check_names(list: &str, names: &[&str], folded: fn(&&str) -> String, how: &str) -> Result<()> {
+    for (index, name) in names.iter().enumerate() {
+        if names[..index].iter().any(|other| folded(other) == folded(name)) {
+            let accepted = format!("a name that no other {list} has{how}");
+            let key = format!("{list}.{index}.name");
+            return Err(Error::refuse(&key, format!("\"{name}\""), &accepted));
+        }
+    }
+    Ok(())
 }
 
 impl Timing {

@@ -107,7 +107,8 @@ impl PinGroup {
     }
 }
 
-fn check_motion(at: &str, motion: &[Keyframe]) -> Result<()> {
+/// Refuses keyframes out of their ranges or their order.
+pub(super) fn check_motion(at: &str, motion: &[Keyframe]) -> Result<()> {
     for (index, keyframe) in motion.iter().enumerate() {
         let at = format!("{at}.{index}");
         limits::frame(&format!("{at}.frame"), keyframe.frame)?;

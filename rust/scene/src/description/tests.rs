@@ -131,27 +131,10 @@ fn keys_of_later_versions_are_refused_by_name() {
         let expected = format!("cloth.flag.fabric.{key} is not supported yet");
         assert_eq!(refused(&format!("cloth.0.fabric.{key}=1")), expected);
     }
-    for key in ["self", "thickness", "friction"] {
-        let expected = format!("collision.{key} is not supported yet");
-        assert_eq!(refused(&format!("collision.{key}=1")), expected);
-    }
     for key in ["enabled", "force", "strain"] {
         assert_eq!(refused(&format!("tear.{key}=1")), format!("tear.{key} is not supported yet"));
     }
-    for (text, expected) in [
-        ("[[collider]]\nname = \"ball\"\n", "collider.ball.name is not supported yet"),
-        (
-            "[[collider]]\nsphere = { center = [0, 0, 0], radius = 1 }\n",
-            "collider.0.sphere is not supported yet",
-        ),
-        ("[[collider]]\nplane = 1\n", "collider.0.plane is not supported yet"),
-        ("[[collider]]\n", "collider.0 is not supported yet"),
-        ("collider = []\n", "collider is not supported yet"),
-        ("[collision]\n", "collision is not supported yet"),
-        ("[tear]\n", "tear is not supported yet"),
-    ] {
-        assert_eq!(refusal(&format!("{text}{GOOD}")), expected);
-    }
+    assert_eq!(refusal(&format!("[tear]\n{GOOD}")), "tear is not supported yet");
     assert_eq!(refused("cloth.0.preset=\"denim\""), "cloth.flag.preset is not supported yet");
     for (change, expected) in [
         (
@@ -275,6 +258,33 @@ const WRONG_VALUES: &[(&str, &str)] = &[
     ("cloth.0.pins.1.motion=[[1]]", "cloth.flag.pins.1.motion.0 = [1]; accepted: a table"),
     ("solver=[]", "solver = []; accepted: a table"),
     ("force=3", "force = 3; accepted: a list"),
+    ("cloth.0.velocity=[0, 0, nan]", "cloth.flag.velocity.2 = NaN; accepted: -1e4 to 1e4 m/s"),
+    ("cloth.0.velocity=[0, 0, -1e5]", "cloth.flag.velocity.2 = -100000.0; accepted"),
+    ("cloth.0.velocity=-30", "cloth.flag.velocity = -30; accepted: 3 numbers"),
+    ("collision=[]", "collision = []; accepted: a table"),
+    ("collision.self=1", "collision.self = 1; accepted: true or false"),
+    ("collision.enabled=\"no\"", "collision.enabled = \"no\"; accepted: true or false"),
+    ("collision.thickness=0", "collision.thickness = 0.0; accepted: above 0 to 1e2 m"),
+    ("collision.thickness=nan", "collision.thickness = NaN; accepted"),
+    ("collision.thickness=101", "collision.thickness = 101.0; accepted"),
+    ("collision.friction=-0.1", "collision.friction = -0.1; accepted: 0 to 100"),
+    ("collision.friction=inf", "collision.friction = inf; accepted: 0 to 100"),
+    ("collision.colliders=[]", "collision.colliders is an unknown key; accepted: enabled, self"),
+    ("cloth.0.collision=false", "cloth.flag.collision = false; accepted: a table"),
+    ("cloth.0.collision.self=\"on\"", "cloth.flag.collision.self = \"on\"; accepted: true or"),
+    ("cloth.0.collision.thickness=-1", "cloth.flag.collision.thickness = -1.0; accepted: above 0"),
+    ("cloth.0.collision.friction=nan", "cloth.flag.collision.friction = NaN; accepted: 0 to 100"),
+    ("cloth.0.collision.slef=true", "cloth.flag.collision.slef is an unknown key; did you mean"),
+    (
+        "cloth.0.collision.excluded_from_self=[-1]",
+        "cloth.flag.collision.excluded_from_self.0 = -1; accepted: a whole number from 0",
+    ),
+    (
+        "cloth.0.collision.colliders=[\"ball\"]",
+        "cloth.flag.collision.colliders.0 = \"ball\"; accepted: names of colliders, of which",
+    ),
+    ("collider=3", "collider = 3; accepted: a list"),
+    ("collider=[[1]]", "collider.0 = [1]; accepted: a table"),
     ("cloth=[]", "cloth is missing; accepted: one [[cloth]] or more"),
     ("cloth=[3]", "cloth.0 = 3; accepted: a table"),
 ];
@@ -325,4 +335,135 @@ fn a_syntax_error_is_told_with_its_line_in_one_line() {
         assert!(!error.contains('\n') && error.ends_with("accepted: TOML"), "{error}");
     }
     assert!(refusal("[scene]\nfps = 24\nfps = 25\n").starts_with("line 3, column 1"));
+}
+
+const BALL: &str = "[[collider]]\nname = \"ball\"\n";
+
+/// The refusal of the good scene with a collider that is a ball and has these keys besides.
+fn refused_ball(keys: &str) -> String {
+    refusal(&format!("{GOOD}{BALL}sphere = {{ center = [0, 0, 0], radius = 0.5 }}\n{keys}\n"))
+}
+
+#[test]
+fn cloth_collides_unless_it_is_told_not_to() {
+    let collision = |changes: &[&str]| {
+        let changes: Vec<String> = changes.iter().map(|&change| change.to_owned()).collect();
+        let scene = Scene::from_toml(GOOD, &changes).expect("a good scene");
+        let own = &scene.cloth[0].collision;
+        own.collision(&scene.collision, &["a", "b"], 20, "at").expect("good vertices")
+    };
+    assert_eq!(collision(&[]), Some(boucle_solver::Collision::default()));
+    assert_eq!(collision(&["collision.enabled=false"]), None);
+    assert_eq!(collision(&["cloth.0.collision.enabled=false"]), None);
+    let both = ["collision.enabled=false", "cloth.0.collision.enabled=true"];
+    assert_eq!(collision(&both), Some(boucle_solver::Collision::default()));
+    let general = ["collision.self=false", "collision.thickness=0.01", "collision.friction=0.7"];
+    let expected = boucle_solver::Collision {
+        with_self: false,
+        thickness: 0.01,
+        friction: 0.7,
+        ..boucle_solver::Collision::default()
+    };
+    assert_eq!(collision(&general), Some(expected.clone()));
+    let own = [&general[..], &["cloth.0.collision.friction=0", "cloth.0.collision.self=true"]];
+    let expected = boucle_solver::Collision { with_self: true, friction: 0.0, ..expected };
+    assert_eq!(collision(&own.concat()), Some(expected));
+}
+
+#[test]
+fn excluded_vertices_must_be_there() {
+    for key in ["excluded_from_self", "excluded_from_colliders"] {
+        let change = format!("cloth.0.collision.{key}=[3, 20]");
+        let scene = Scene::from_toml(GOOD, &[change]).expect("the mesh is not known yet");
+        let own = &scene.cloth[0].collision;
+        let met = |count| own.collision(&scene.collision, &[], count, "cloth.flag.collision");
+        let error = met(20).expect_err("vertex 20 of 20").to_string();
+        assert_eq!(error, format!("cloth.flag.collision.{key}.1 = 20; accepted: 0 to 19"));
+        assert!(met(21).is_ok());
+    }
+}
+
+#[test]
+fn a_cloth_may_name_the_colliders_that_it_meets() {
+    let colliders = format!(
+        "{GOOD}{BALL}sphere = {{ center = [0, 0, 0], radius = 0.5 }}\n\
+         [[collider]]\nname = \"floor\"\nplane = {{ point = [0, 0, 0], normal = [0, 0, 3] }}\n"
+    );
+    let read = |names: &str| {
+        Scene::from_toml(&colliders, &[format!("cloth.0.collision.colliders={names}")])
+    };
+    let scene = read("[\"floor\"]").expect("a good scene");
+    let own = &scene.cloth[0].collision;
+    let collision = own.collision(&scene.collision, &["ball", "floor"], 20, "").expect("good");
+    assert_eq!(collision.and_then(|collision| collision.colliders), Some(vec![1]));
+    let error = read("[\"flor\"]").expect_err("no such collider").to_string();
+    let expected = "cloth.flag.collision.colliders.0 = \"flor\"; accepted: \"ball\", \"floor\"";
+    assert_eq!(error, expected);
+}
+
+#[test]
+fn wrong_colliders_are_refused_by_their_name() {
+    for (keys, expected) in [
+        ("radius = 1", "collider.ball.radius is an unknown key"),
+        ("mesh = \"a.obj\"", "collider.ball: sphere and mesh; accepted: one of sphere, plane, box"),
+        ("friction = -1", "collider.ball.friction = -1.0; accepted: 0 to 100"),
+        ("thickness = -0.1", "collider.ball.thickness = -0.1; accepted: 0 to 100 m"),
+        ("thickness = nan", "collider.ball.thickness = NaN; accepted: 0 to 100 m"),
+        ("up = \"y\"", "collider.ball.up: accepted only with mesh"),
+        ("cache = \"a.pc2\"", "collider.ball.cache: accepted only with mesh"),
+        ("transform = { scale = 0 }", "collider.ball.transform.scale = 0.0; accepted: above 0"),
+        ("motion = [{ location = [0, 0, 0] }]", "collider.ball.motion.0.frame is missing"),
+        (
+            "motion = [{ frame = 2 }, { frame = 1 }]",
+            "collider.ball.motion.1.frame = 1; accepted: a frame after 2",
+        ),
+        (
+            "motion = [{ frame = 2, location = [nan, 0, 0] }]",
+            "collider.ball.motion.0.location.0 = NaN; accepted",
+        ),
+        (BALL, "collider.1.name = \"ball\"; accepted: a name that no other collider has"),
+    ] {
+        let error = refused_ball(keys);
+        assert!(error.starts_with(expected), "{error} for {keys}");
+        assert!(!error.contains('\n'), "{error}");
+    }
+    let missing =
+        format!("{GOOD}[[collider]]\nplane = {{ point = [0, 0, 0], normal = [0, 0, 1] }}");
+    assert_eq!(refusal(&missing), "collider.0.name is missing");
+    let both = "mesh = \"a.obj\"\ncache = \"a.pc2\"\nmotion = [{ frame = 1 }]\n";
+    let error = refusal(&format!("{GOOD}{BALL}{both}"));
+    assert_eq!(error, "collider.ball: motion and cache; accepted: one of the two");
+}
+
+#[test]
+fn wrong_shapes_are_refused_with_key_and_value() {
+    for (shape, expected) in [
+        ("sphere = { center = [0, 0, 0] }", "sphere.radius is missing"),
+        ("sphere = { center = [0, 0, 0], radius = 0 }", "sphere.radius = 0.0; accepted: above 0"),
+        ("sphere = { center = [0, 0, 0], radius = nan }", "sphere.radius = NaN; accepted: above 0"),
+        ("sphere = { center = [0, inf, 0], radius = 1 }", "sphere.center.1 = inf; accepted"),
+        ("sphere = { center = [0, 0], radius = 1 }", "sphere.center = [0, 0]; accepted: 3 numbers"),
+        ("sphere = 1", "sphere = 1; accepted: a table"),
+        ("plane = { point = [0, 0, 0] }", "plane.normal is missing"),
+        (
+            "plane = { point = [0, 0, 0], normal = [0, 0, 0] }",
+            "plane.normal = [0.0, 0.0, 0.0]; accepted: a vector with a length",
+        ),
+        ("plane = { point = [0, 0, 0], normal = [0, 0, nan] }", "plane.normal.2 = NaN; accepted"),
+        ("box = { center = [0, 0, 0], size = [1, 0, 1] }", "box.size.1 = 0.0; accepted: above 0"),
+        (
+            "box = { center = [0, 0, 0], size = [1, 1, 1], rotation_deg = [inf, 0, 0] }",
+            "box.rotation_deg.0 = inf; accepted",
+        ),
+        ("box = { center = [0, 0, 0], sizes = [1, 1, 1] }", "box.sizes is an unknown key; did you"),
+        (
+            "capsule = { a = [0, 0, 1], b = [0, 0, 1], radius = 1 }",
+            "capsule.b = [0.0, 0.0, 1.0]; accepted: another point than a",
+        ),
+        ("capsule = { a = [0, 0, 1], b = [0, 0, 0], radius = -1 }", "capsule.radius = -1.0"),
+        ("mesh = 3", "mesh = 3; accepted: text in quotes"),
+    ] {
+        let error = refusal(&format!("{GOOD}{BALL}{shape}\n"));
+        assert!(error.starts_with(&format!("collider.ball.{expected}")), "{error} for {shape}");
+    }
 }

@@ -1,0 +1,140 @@
+//! `[collision]` and `[cloth.collision]`: how cloth touches.
+//!
+//! The first holds for every cloth, the second for one, key by key. Cloth collides unless it is told not to.
+
+use boucle_solver::Collision;
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::limits;
+
+/// Largest thickness and radius (m) that the solver takes.
+pub(super) const THICKEST: f64 = 100.0;
+/// Largest coefficient of friction that the solver takes.
+const ROUGHEST: f64 = 100.0;
+
+/// `[collision]`: how every cloth collides that does not say otherwise.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct CollisionDescription {
+    /// Whether cloth touches anything.
+    pub enabled: bool,
+    /// Whether a cloth collides with itself.
+    #[serde(rename = "self")]
+    pub with_self: bool,
+    /// Radius (m) of the cloth.
+    pub thickness: f64,
+    /// Coefficient of friction.
+    pub friction: f64,
+}
+
+impl Default for CollisionDescription {
+    fn default() -> Self {
+        let Collision { with_self, thickness, friction, .. } = Collision::default();
+        Self { enabled: true, with_self, thickness, friction }
+    }
+}
+
+impl CollisionDescription {
+    pub(super) fn check(&self) -> Result<()> {
+        check_numbers("collision", Some(self.thickness), Some(self.friction))
+    }
+}
+
+/// `[cloth.collision]`: what one cloth does otherwise.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ClothCollision {
+    /// Whether it touches anything.
+    pub enabled: Option<bool>,
+    /// Whether it collides with itself.
+    #[serde(rename = "self")]
+    pub with_self: Option<bool>,
+    /// Its radius (m).
+    pub thickness: Option<f64>,
+    /// Its coefficient of friction.
+    pub friction: Option<f64>,
+    /// Vertices that do not collide with their own cloth.
+    pub excluded_from_self: Vec<u32>,
+    /// Vertices that do not collide with colliders.
+    pub excluded_from_colliders: Vec<u32>,
+    /// The names of the colliders that it meets; all if missing.
+    pub colliders: Option<Vec<String>>,
+}
+
+impl ClothCollision {
+    pub(super) fn check(&self, at: &str, colliders: &[&str]) -> Result<()> {
+        check_numbers(at, self.thickness, self.friction)?;
+        for (index, name) in self.colliders.iter().flatten().enumerate() {
+            if !colliders.contains(&name.as_str()) {
+                let known: Vec<String> =
+                    colliders.iter().map(|name| format!("\"{name}\"")).collect();
+                let accepted = match known.as_slice() {
+                    [] => "names of colliders, of which the scene has none".to_owned(),
+                    known => known.join(", "),
+                };
+                let key = format!("{at}.colliders.{index}");
+                return Err(Error::refuse(&key, format!("\"{name}\""), &accepted));
+            }
+        }
+        Ok(())
+    }
+
+    /// How a cloth of so many vertices collides, where `general` holds unless it says otherwise; not at all if `None`.
+    /// `at` is the key of this table.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for an excluded vertex that is not there.
+    pub(crate) fn collision(
+        &self,
+        general: &CollisionDescription,
+        colliders: &[&str],
+        vertex_count: usize,
+        at: &str,
+    ) -> Result<Option<Collision>> {
+        check_vertices(
+            &format!("{at}.excluded_from_self"),
+            &self.excluded_from_self,
+            vertex_count,
+        )?;
+        let excluded = &self.excluded_from_colliders;
+        check_vertices(&format!("{at}.excluded_from_colliders"), excluded, vertex_count)?;
+        if !self.enabled.unwrap_or(general.enabled) {
+            return Ok(None);
+        }
+        let number = |name: &String| colliders.iter().position(|other| other == name);
+        let met = |names: &Vec<String>| names.iter().filter_map(number).map(|n| n as u32).collect();
+        Ok(Some(Collision {
+            with_self: self.with_self.unwrap_or(general.with_self),
+            thickness: self.thickness.unwrap_or(general.thickness),
+            friction: self.friction.unwrap_or(general.friction),
+            excluded_from_self: self.excluded_from_self.clone(),
+            excluded_from_colliders: excluded.clone(),
+            colliders: self.colliders.as_ref().map(met),
+        }))
+    }
+}
+
+fn check_vertices(at: &str, vertices: &[u32], count: usize) -> Result<()> {
+    match vertices.iter().position(|&vertex| vertex as usize >= count) {
+        Some(index) => Err(Error::refuse(
+            &format!("{at}.{index}"),
+            vertices[index],
+            &format!("0 to {}", count.saturating_sub(1)),
+        )),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a thickness (m) of a cloth or a coefficient of friction beyond its range.
+fn check_numbers(at: &str, thickness: Option<f64>, friction: Option<f64>) -> Result<()> {
+    if let Some(thickness) = thickness {
+        limits::above_zero(&format!("{at}.thickness"), thickness, THICKEST, " m")?;
+    }
+    friction.map_or(Ok(()), |friction| check_friction(at, friction))
+}
+
+/// Refuses a coefficient of friction beyond its range.
+pub(super) fn check_friction(at: &str, friction: f64) -> Result<()> {
+    limits::within(&format!("{at}.friction"), friction, &(0.0..=ROUGHEST), "0 to 100")
+}

@@ -4,6 +4,8 @@
 //! comes from. The tables in `reference/` were computed independently, with numpy.
 
 mod conservation;
+mod contact_friction;
+mod contact_things;
 mod determinism;
 mod drag;
 mod dynamics;

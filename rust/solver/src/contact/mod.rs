@@ -23,6 +23,8 @@ mod search;
 mod matrix;
 mod cut;
 mod truncation;
+#[cfg(test)]
+mod tests;
 
 use boucle_geometry::Vector;
 use rayon::prelude::*;

@@ -68,7 +68,7 @@ fn a_sheet_laid_on_a_floor_stays_at_rest() {
             assert!(per_mass < 1e-6, "{integrator:?}, frame {}: {per_mass} J/kg", certificate.frame);
         }
         // Where the ramped force of a contact carries the weight, within steps of a 48th of a second or less.
-        let deepest = (2.0 * 0.25 * 0.008 * 9.81 / (20.0 * 48.0 * 48.0)).sqrt();
+        let deepest = f64::sqrt(2.0 * 0.25 * 0.008 * 9.81 / (20.0 * 48.0 * 48.0));
         for x in simulation.positions(0) {
             let depth = 0.008 - x.z;
             assert!(depth > 0.0 && depth < 1.05 * deepest, "{integrator:?}: {depth} of {deepest}");

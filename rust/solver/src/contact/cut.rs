@@ -64,6 +64,10 @@ pub(super) fn cut(candidate: &Candidate, bodies: &Bodies, paths: &Paths) -> Opti
     let offset = candidate.closest(start_of).offset;
     let length = offset.norm();
     let distance = length - radius;
+    // What is inside a sphere already has to come out.
+    if distance <= 0.0 && radius > 0.0 {
+        return None;
+    }
     let normal = offset / length;
     let [near, far] = gap(&normal, &start_of);
     if !(near - far >= CLEAR * distance && near - far > 0.0) {

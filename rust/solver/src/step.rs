@@ -121,9 +121,8 @@ impl Step<'_> {
         is_again: bool,
     ) -> bool {
         let limits = limits.iter_mut().filter(|limit| !is_again || limit.promises());
-        let is_held = |limit: &mut Limit| {
-            limit.hold(state, &self.system.inverse_masses, self.h, most_sweeps)
-        };
+        let is_held =
+            |limit: &mut Limit| limit.hold(state, &self.system.inverse_masses, self.h, most_sweeps);
         limits.map(is_held).fold(true, |all, held| all & held)
     }
 }

@@ -153,9 +153,8 @@ impl Bodies {
             None if one == other => (0, self.bodies[one as usize].with_self),
             None => return true,
         };
-        let is_included = |&point: &u32| {
-            self.excluded.get(point as usize).is_none_or(|excluded| !excluded[kind])
-        };
+        let is_included =
+            |&point: &u32| self.excluded.get(point as usize).is_none_or(|excluded| !excluded[kind]);
         meet && first.iter().all(is_included) && second.iter().all(is_included)
     }
 }

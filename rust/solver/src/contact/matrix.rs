@@ -57,7 +57,8 @@ impl ContactMatrix {
     /// Takes over which particles the contacts join; `count` particles there are.
     pub(super) fn join(&mut self, contacts: &[Contact], inverse_masses: &[f64]) {
         let count = inverse_masses.len();
-        let moves = |point: u32| inverse_masses.get(point as usize).is_some_and(|&inverse| inverse > 0.0);
+        let moves =
+            |point: u32| inverse_masses.get(point as usize).is_some_and(|&inverse| inverse > 0.0);
         self.tangents.clear();
         self.tangents.extend(contacts.iter().map(|contact| {
             let mut tangent = Tangent {
@@ -173,11 +174,9 @@ impl ContactMatrix {
     /// Adds forces along the contacts (N, vectors for each contact) to the particles, in f64.
     pub(super) fn add_forces(&self, forces: &[Vector], out: &mut Coordinates) {
         for (place, &particle) in self.particles.iter().enumerate() {
-            let sum = self
-                .incidences_of(place)
-                .fold(Vector::zeros(), |sum, (contact, weight)| {
-                    sum + f64::from(weight) * forces[contact as usize]
-                });
+            let sum = self.incidences_of(place).fold(Vector::zeros(), |sum, (contact, weight)| {
+                sum + f64::from(weight) * forces[contact as usize]
+            });
             for axis in 0..3 {
                 out.0[axis][particle as usize] += sum[axis];
             }
@@ -306,6 +305,10 @@ impl Tangent {
         let [x, y, z] = self.normal;
         let along = sign * self.along * (x * u[0] + y * u[1] + z * u[2]);
         let all_around = sign * self.all_around;
-        [x * along + all_around * u[0], y * along + all_around * u[1], z * along + all_around * u[2]]
+        [
+            x * along + all_around * u[0],
+            y * along + all_around * u[1],
+            z * along + all_around * u[2],
+        ]
     }
 }

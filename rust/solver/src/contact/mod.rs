@@ -13,16 +13,16 @@ mod bodies;
 mod candidate;
 #[expect(clippy::module_inception, reason = "the module of contact holds the type of one contact")]
 mod contact;
+mod cut;
 mod features;
 mod friction;
 mod half_space;
 mod intersections;
+mod matrix;
 mod paths;
 mod recovery;
 mod response;
 mod search;
-mod matrix;
-mod cut;
 mod truncation;
 
 use boucle_geometry::Vector;
@@ -36,10 +36,10 @@ use bodies::Bodies;
 use candidate::Candidate;
 use contact::{Contact, Near};
 use features::Trees;
+pub(crate) use matrix::ContactMatrix;
 use paths::Paths;
 use recovery::Tangle;
 pub(crate) use response::Response;
-pub(crate) use matrix::ContactMatrix;
 
 /// What a contact does at a guess.
 #[derive(Clone, Copy, Debug, Default)]
@@ -124,11 +124,25 @@ impl Contacts {
 
     /// The particles that contacts press, some of them more than once.
     pub(crate) fn pressed(&self) -> impl Iterator<Item = u32> {
-        let pressed = self.contacts.iter().zip(&self.pressures);
-        let pressed = pressed.filter(|(_, pressure)| pressure.force > 0.0);
-        let points = pressed.flat_map(|(contact, _)| contact.points.into_iter().zip(contact.weights));
-        let free = points.filter(|&(point, weight)| weight != 0.0 && self.paths.is_free(point));
-        free.map(|(point, _)| point)
+        let pressed = self.pressures().filter(|&(_, force)| force > 0.0);
+        pressed.map(|(point, _)| point).filter(|&point| self.paths.is_free(point))
+    }
+
+    /// The force (N) that each contact presses each of its particles with.
+    pub(crate) fn pressures(&self) -> impl Iterator<Item = (u32, f64)> {
+        let points = self.contacts.iter().zip(&self.pressures).flat_map(|(contact, pressure)| {
+            let shares = contact.weights.map(|weight| weight.abs() * pressure.force);
+            contact.points.into_iter().zip(shares)
+        });
+        points.filter(|&(point, _)| self.bodies.is_particle(point))
+    }
+
+    /// The particles of each edge and triangle that pass through each other.
+    pub(crate) fn tangled(&self) -> impl Iterator<Item = u32> {
+        let crossings = self.tangle.crossings.iter();
+        let points = crossings
+            .flat_map(|crossing| crossing.edge.points.into_iter().chain(crossing.triangle.points));
+        points.filter(|&point| self.bodies.is_particle(point))
     }
 
     /// Where the points of all colliders are (m).
@@ -168,7 +182,11 @@ impl Contacts {
     pub(crate) fn start_step(&mut self, part: [u32; 2], count: u32, positions: &Coordinates) {
         let at = |part: u32, from: &Vector, to: &Vector| {
             // What arrives is exactly there.
-            if part == count { *to } else { from + f64::from(part) / f64::from(count) * (to - from) }
+            if part == count {
+                *to
+            } else {
+                from + f64::from(part) / f64::from(count) * (to - from)
+            }
         };
         let first = self.bodies.particle_count;
         let [from, to] = &self.frame;

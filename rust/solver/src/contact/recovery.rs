@@ -123,7 +123,8 @@ fn part(
     let [a, b, c] = triangle.points.map(place);
     let [p, q] = edge.points.map(place);
     let are_cloths = bodies.is_particle(edge.points[0]) && bodies.is_particle(triangle.points[0]);
-    let is_same = bodies.body_of[edge.points[0] as usize] == bodies.body_of[triangle.points[0] as usize];
+    let is_same =
+        bodies.body_of[edge.points[0] as usize] == bodies.body_of[triangle.points[0] as usize];
     let shortening = if are_cloths && !is_same { None } else { shortening(crossing, place) };
     let direction = shortening.unwrap_or_else(|| {
         let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_else(Vector::z);

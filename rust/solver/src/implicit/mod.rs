@@ -303,7 +303,11 @@ impl Implicit {
         let inverse = preconditioner.inverse(system, h);
         let operator = &hessian.on(&system.layout, &contacts.matrix);
         let contacts = &contacts.matrix;
-        gradients.solve(operator, &mut Smoothed { matrix, contacts, blocks, inverse, scratch }, STOP)
+        gradients.solve(
+            operator,
+            &mut Smoothed { matrix, contacts, blocks, inverse, scratch },
+            STOP,
+        )
     }
 
     /// Moves the guess by the solution.

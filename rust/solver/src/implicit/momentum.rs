@@ -153,7 +153,9 @@ mod tests {
             moves.0[1][i] = 0.1 * i as f32;
         }
         let inertia = |particle: usize| 2.0 + particle as f64;
-        let shifts = pieces.shifts(&state.position, &moves, inertia, &ContactMatrix::default()).expect("a free piece");
+        let shifts = pieces
+            .shifts(&state.position, &moves, inertia, &ContactMatrix::default())
+            .expect("a free piece");
         assert!(shifts.of(1).iter().all(|shift| shift.to_bits() == 0));
         let balance: f64 = [0, 2, 3, 4]
             .iter()
@@ -164,6 +166,8 @@ mod tests {
             .sum();
         assert!(balance.abs() < 1e-12, "{balance}");
         pieces.follow_pins(|particle| particle >= 4);
-        assert!(pieces.shifts(&state.position, &moves, inertia, &ContactMatrix::default()).is_none());
+        assert!(
+            pieces.shifts(&state.position, &moves, inertia, &ContactMatrix::default()).is_none()
+        );
     }
 }

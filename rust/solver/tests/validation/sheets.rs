@@ -67,7 +67,16 @@ pub(crate) fn network(
     material: SpringMaterial,
 ) -> Cloth {
     let (name, pins) = ("network".to_owned(), pins.to_vec());
-    Cloth { name, mesh: Mesh::default(), positions, springs, masses, pins, material, collision: None }
+    Cloth {
+        name,
+        mesh: Mesh::default(),
+        positions,
+        springs,
+        masses,
+        pins,
+        material,
+        collision: None,
+    }
 }
 
 /// A mass of 1 kg on a spring of 1 m along x from a pin at the origin. The damping (N·s/m) is the spring's.

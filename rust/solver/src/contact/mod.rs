@@ -24,6 +24,8 @@ mod recovery;
 mod response;
 mod search;
 mod truncation;
+#[cfg(test)]
+mod tests;
 
 use boucle_geometry::Vector;
 use rayon::prelude::*;

@@ -77,6 +77,7 @@ struct Making {
     cloths: Vec<Cloth>,
     system: System,
     implicit: Implicit,
+    contacts: Contacts,
     base: Vectors,
 }
 
@@ -93,7 +94,8 @@ impl Making {
         let mut implicit = Implicit::new(rule, LinearSolver::Ldlt, &cloths, &system, &state);
         implicit.follow_pins(&system);
         let base = positions.iter().zip(velocities).map(|(x, v)| x - H * v).collect();
-        Self { cloths, system, implicit, base }
+        let contacts = Contacts::new(&cloths, &[]);
+        Self { cloths, system, implicit, contacts, base }
     }
 
     /// What the forces leave at some positions (N), with the tangents there.
@@ -104,21 +106,21 @@ impl Making {
             self.implicit.base.position.set(i, base);
             self.implicit.base.velocity.set(i, base);
         }
-        self.implicit.linearize(&self.system, H);
+        self.implicit.linearize(&self.system, &mut self.contacts, H, H);
         vectors(&self.implicit.residual.position)
     }
 
     /// The product with the matrix frozen at the last positions.
     fn product(&self, vectors: &[Vector]) -> Vectors {
-        let Self { system, implicit, .. } = self;
-        apply(&implicit.hessian.on(&system.layout), vectors)
+        let Self { system, implicit, contacts, .. } = self;
+        apply(&implicit.hessian.on(&system.layout, &contacts.matrix), vectors)
     }
 
     /// What the preconditioner of the step makes of a direction.
     fn precondition(&mut self, direction: &[Vector]) -> Vectors {
-        let Self { system, implicit, .. } = self;
+        let Self { system, implicit, contacts, .. } = self;
         let Implicit { preconditioner, hessian, blocks, scratch, .. } = implicit;
-        let matrix = &hessian.without_bends(&system.layout);
+        let matrix = &hessian.without_bends(&system.layout, &contacts.matrix);
         let inverse = preconditioner.inverse(system, H);
         let mut smoothed = Smoothed { matrix, blocks, inverse, scratch };
         let mut z = Field::zeros(direction.len());
@@ -131,7 +133,8 @@ impl Making {
         let mut x = direction.to_vec();
         let mut largest = 0.0;
         for _ in 0..60 {
-            let matrix = self.implicit.hessian.without_bends(&self.system.layout);
+            let Self { system, implicit, contacts, .. } = self;
+            let matrix = implicit.hessian.without_bends(&system.layout, &contacts.matrix);
             let product = field(&apply(&matrix, &x));
             let [mut step, mut z] = [(); 2].map(|()| Field::zeros(x.len()));
             self.implicit.blocks.relax([0.0, 1.0], &product, &mut step, &mut z);

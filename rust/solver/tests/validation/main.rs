@@ -4,6 +4,13 @@
 //! comes from. The tables in `reference/` were computed independently, with numpy.
 
 mod conservation;
+mod contact_debug;
+mod contact_determinism;
+mod contact_energy;
+mod contact_friction;
+mod contact_rules;
+mod contact_scenes;
+mod contact_things;
 mod determinism;
 mod drag;
 mod dynamics;

@@ -42,6 +42,12 @@ REST_ATTRIBUTE = "boucle_rest"
 STRAIN_ATTRIBUTE = "boucle_strain"
 """Point attribute: the largest strain of the edges at each vertex in the frame that is shown."""
 
+CONTACT_ATTRIBUTE = "boucle_contact"
+"""Point attribute: the force (N) with which contacts press on each vertex in the frame that is shown."""
+
+INTERSECTION_ATTRIBUTE = "boucle_intersection"
+"""Point attribute: in how many intersections each vertex takes part in the frame that is shown."""
+
 REST_COUNT = "boucle_rest_count"
 """Custom property of a mesh beside that attribute: how many vertices it had when the rest shape was kept."""
 

@@ -62,6 +62,8 @@ class Session:
     """The object in its parent's space, when the last frame was shown."""
     waits: str = ""
     """Why the cloth does not move on at the present frame; empty if it does."""
+    refusal: str = ""
+    """Why the frame after the last could not be simulated when the scene stood there."""
 
 
 _sessions: dict[int, Session] = {}
@@ -216,8 +218,9 @@ def _step(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgrap
         targets = session.colliders.targets(depsgraph)
         pose = sampling.pose(obj, depsgraph, session.is_pinned, targets)
     except Refusal as refusal:
-        session.waits = str(refusal)
+        session.waits = session.refusal = str(refusal)
         return
+    session.refusal = ""
     try:
         pose.aim(session.solver)
         certificate = session.solver.advance()
@@ -252,7 +255,7 @@ def _explain(session: Session, action: Action) -> str:
             "add-on's preferences"
         )
     if action is Action.WAIT:
-        return (
+        return session.refusal or (
             f"frame {last + 1} was skipped: the cloth waits at frame {last}, play on from there "
             "with Sync set to Play Every Frame"
         )

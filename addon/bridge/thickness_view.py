@@ -25,10 +25,14 @@ def follow() -> None:
     """Draw if a cloth wants it, else stop."""
     global _handle
     forget()
-    if bpy.app.background or not any(obj.boucle.show_thickness for obj in registry.all_cloths()):
+    if not _has_window() or not any(obj.boucle.show_thickness for obj in registry.all_cloths()):
         end()
     elif _handle is None:
         _handle = bpy.types.SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW")
+
+
+def _has_window() -> bool:
+    return not bpy.app.background
 
 
 def end() -> None:
@@ -66,12 +70,13 @@ def _draw() -> None:
     import gpu
 
     context = bpy.context
+    space = context.space_data
     shown = [
         obj
         for obj in registry.cloths_of(context.scene)
         if obj.boucle.show_thickness and obj.visible_get() and obj.mode == "OBJECT"
     ]
-    if not shown:
+    if not shown or (space is not None and not space.overlay.show_overlays):
         return
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
     shader.uniform_float("color", _COLOR)

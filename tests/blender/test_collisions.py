@@ -475,6 +475,92 @@ def test_the_thickness_is_drawn_in_metres_and_only_where_there_is_a_window(blend
     assert shape == [[9, 3], [12, 2]]
 
 
+class Gpu:
+    """Takes the place of Blender's gpu module, which needs a graphics card: it knows what was drawn."""
+
+    def __init__(self):
+        self.drawn, self.made = [], 0
+        self.shader = self.types = self.state = self
+
+    def from_builtin(self, name):
+        assert name == "UNIFORM_COLOR"
+        return self
+
+    def format_calc(self):
+        return "format"
+
+    def uniform_float(self, name, color):
+        assert name == "color" and len(color) == 4
+
+    def blend_set(self, _mode):
+        """Nothing to blend."""
+
+    depth_test_set = blend_set
+
+    def GPUIndexBuf(self, type, seq):  # noqa: N802 (Blender's word)
+        assert type == "LINES" and seq.format == "i"
+        return seq.tolist()
+
+    def GPUVertBuf(self, _format, count):  # noqa: N802 (Blender's word)
+        gpu = self
+
+        class Buffer:
+            def attr_fill(self, name, rows):
+                assert name == "pos" and rows.format == "f" and rows.shape == (count, 3)
+                self.top = max(row[2] for row in rows.tolist())
+                gpu.made += 1
+
+        return Buffer()
+
+    def GPUBatch(self, type, buf, elem):  # noqa: N802 (Blender's word)
+        assert type == "LINES"
+        gpu = self
+
+        class Batch:
+            def draw(self, _shader):
+                gpu.drawn.append([buf.top, len(elem)])
+
+        return Batch()
+
+
+def draw_the_thickness():
+    import sys
+
+    import addon_utils
+    import bpy
+    from cloths import addon
+
+    gpu = sys.modules["gpu"] = Gpu()
+    view = addon("bridge.thickness_view")
+    view._has_window = lambda: True
+    sheet = add_sheet(height=1.0, thickness=0.125, side=3)
+    out = [view._handle is None]
+    sheet.boucle.show_thickness = True
+    out.append(view._handle is not None)
+    bpy.context.view_layer.update()
+    view._draw()
+    out += [list(gpu.drawn), gpu.made]
+    view._draw()
+    out += [len(gpu.drawn), gpu.made]
+    sheet.location.z = 2.0
+    bpy.context.view_layer.update()
+    view._draw()
+    out.append(gpu.drawn[4:])
+    sheet.boucle.show_thickness = False
+    out.append(view._handle is None)
+    view._draw()
+    out.append(len(gpu.drawn))
+    sheet.boucle.show_thickness = True
+    addon_utils.disable("bl_ext.user_default.boucle")
+    return [*out, view._handle is None]
+
+
+def test_the_thickness_is_computed_once_and_drawn_only_while_it_is_wanted(blender):
+    assert blender.run(draw_the_thickness) == [
+        True, True, [[1.125, 12], [0.875, 12]], 2, 4, 2, [[2.125, 12], [1.875, 12]], True, 6, True,
+    ]  # fmt: skip
+
+
 def meet_many_objects():
     import time
 

@@ -141,6 +141,29 @@ def test_a_collider_moved_by_keys_a_shape_key_or_an_armature_lifts_the_cloth(ble
         assert crossed == [0] * 12, name
 
 
+def lie_on_a_baked_cloth():
+    import bpy
+
+    under, over = add_sheet(height=0.1), add_sheet(height=0.2)
+    add_collider()
+    under.modifiers.new("Collision", "COLLISION")
+    bpy.ops.object.select_all(action="DESELECT")
+    bpy.context.view_layer.objects.active = under
+    bpy.ops.boucle.bake()
+    bpy.context.view_layer.objects.active = over
+    bpy.ops.boucle.bake()
+    bpy.context.scene.frame_set(24)
+    pairs = list(zip(heights(under), heights(over), strict=True))
+    return [over.boucle.certificate, min(low for low, _ in pairs), min(b - a for a, b in pairs)]
+
+
+def test_a_baked_cloth_with_a_collision_modifier_carries_another(blender):
+    line, lowest, gap = blender.run(lie_on_a_baked_cloth)
+    assert line.startswith("Frame 24: ") and "no intersections" in line
+    assert lowest > 0.0
+    assert 0.002 < gap < 0.002 + OUTER + 0.005
+
+
 def who_collides():
     import bpy
     from cloths import addon

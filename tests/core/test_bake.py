@@ -158,6 +158,63 @@ def test_a_resumed_bake_keeps_no_strain_that_it_did_not_have_from_the_start(tmp_
         assert not (tmp_path / "a.strain").exists()
 
 
+class Touching:
+    """A simulation that tells of contacts: the frame and the vertex are in the numbers."""
+
+    def __init__(self):
+        self._real = solver()
+
+    def __getattr__(self, name):
+        return getattr(self._real, name)
+
+    def read_contacts(self, cloth, out):
+        assert cloth == 0
+        out[:] = array("f", [self.frame + 0.5 * vertex for vertex in range(SIDE**2)])
+
+    def read_intersections(self, cloth, out):
+        assert cloth == 0
+        out[:] = array("f", [float(vertex % 2) for vertex in range(SIDE**2)])
+
+
+def test_contacts_and_intersections_are_kept_each_in_a_file_of_its_own(tmp_path):
+    count = SIDE**2
+    pull(Touching(), store(tmp_path, keeps=("contact", "intersection")), steps=4)
+    pull(Touching(), store(tmp_path, keeps=("contact", "intersection")), resume=True)
+    contact, crossed = str(tmp_path / "a.contact"), str(tmp_path / "a.intersection")
+    assert vertex_file.row_count(contact, count) == vertex_file.row_count(crossed, count) == END
+    assert vertex_file.read(contact, 6, count)[:3].tolist() == [7.0, 7.5, 8.0]
+    assert vertex_file.read(crossed, 6, count)[:3].tolist() == [0.0, 1.0, 0.0]
+    assert not (tmp_path / "a.strain").exists()
+    (tmp_path / "a.strain").write_bytes((tmp_path / "a.contact").read_bytes())
+    assert vertex_file.row_count(str(tmp_path / "a.strain"), count) == 0, "of another quantity"
+
+
+class Aimed(Touching):
+    """A simulation that notes where its colliders go."""
+
+    def __init__(self):
+        super().__init__()
+        self.aims = []
+
+    def set_collider_targets(self, collider, targets):
+        self.aims.append((self.frame + 1, collider, targets))
+
+
+def test_pins_and_colliders_are_told_where_they_go_before_each_frame(tmp_path):
+    simulation = Aimed()
+
+    def among(frame):
+        return pose(frame)._replace(colliders=[f"ball at {frame}", f"box at {frame}"])
+
+    for step in bake.bake(simulation, store(tmp_path), among, False, boucle_core.InternalError):
+        step.run()
+    assert simulation.aims == [
+        (frame, number, f"{name} at {frame}")
+        for frame in range(2, END + 1)
+        for number, name in enumerate(("ball", "box"))
+    ]
+
+
 @pytest.mark.parametrize("integrator", ["bdf2", "implicit_euler"])
 def test_a_stopped_bake_of_an_implicit_integrator_goes_on_bit_equal(tmp_path, integrator):
     whole, part = tmp_path / "whole", tmp_path / "part"

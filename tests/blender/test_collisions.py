@@ -141,6 +141,47 @@ def test_a_collider_moved_by_keys_a_shape_key_or_an_armature_lifts_the_cloth(ble
         assert crossed == [0] * 12, name
 
 
+def stop_on_a_moving_collider():
+    import bpy
+    from cloths import addon, refusal_of
+
+    sheet, floor = add_sheet(height=0.1), add_collider()
+    for frame, height in ((1, 0.0), (12, 0.4), (24, -0.2)):
+        floor.location.z = height
+        floor.keyframe_insert("location", frame=frame)
+    bake = addon("bridge.bake").Bake(sheet, bpy.context.scene)
+    steps = bake.steps()
+    for step in steps:
+        step.run()
+        if step.frame == 9:
+            break
+    steps.close()
+    bpy.context.view_layer.objects.active = sheet
+
+    def baked():
+        with open(bake.store.files.pc2, "rb") as file:
+            return file.read()
+
+    part = len(baked())
+    bpy.ops.boucle.bake(resume=True)
+    resumed = baked()
+    status = sheet.boucle.status
+    floor.collision.cloth_friction = 30.0
+    outdated = sheet.boucle.status
+    refusal = refusal_of(bpy.ops.boucle.bake, resume=True)
+    floor.collision.cloth_friction = 5.0
+    bpy.ops.boucle.bake()
+    return [part < len(resumed), resumed == baked(), status, outdated, refusal]
+
+
+def test_a_bake_on_a_moving_collider_resumes_bit_equal(blender):
+    is_part, same, status, outdated, refusal = blender.run(stop_on_a_moving_collider)
+    assert is_part and same
+    assert status.startswith("Baked: frames 1 to 24") and "outdated" not in status
+    assert outdated.endswith('outdated, changed since: collider "Floor"')
+    assert "is of other settings or another mesh" in refusal
+
+
 def lie_on_a_baked_cloth():
     import bpy
 

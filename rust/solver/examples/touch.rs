@@ -24,6 +24,20 @@ fn main() {
         "box" => colliders.push(col("box", Shape::cuboid(), (0..8).map(|i| { let s=0.4; let v=Vector::new(if i&1>0 {s} else {-s}, if i&2>0 {s} else {-s}, if i&4>0 {s} else {-s}); v+Vector::new(0.,0.,-0.5)}).collect())),
         "two" => { let (m,p) = grid(n, 1.6, 0.05); let mut c = Cloth::from_mesh("upper", m, p, &Mass::Density(0.2), material.clone(), vec![]).unwrap(); c.collision = cloths[0].collision.clone(); cloths.push(c);
             colliders.push(col("ball", Shape::Sphere{radius:0.5}, vec![Vector::new(0.0,0.0,-0.6)])); }
+        "cross" => { // two sheets crossing in an X
+            let tilt = |p: &mut Vec<Vector>, a: f64| for v in p.iter_mut() { let (x,z)=(v.x,v.z); v.x = x*a.cos(); v.z = x*a.sin()+z; };
+            let (m,mut p) = grid(n, 1.0, 0.003); tilt(&mut p, 0.3); let c = Cloth::from_mesh("b", m, p, &Mass::Density(0.2), material.clone(), vec![]).unwrap();
+            let (m,mut p) = grid(n, 1.0, 0.0); tilt(&mut p, -0.3); let d = Cloth::from_mesh("a", m, p, &Mass::Density(0.2), material.clone(), vec![]).unwrap();
+            let col = cloths[0].collision.clone(); cloths = vec![Cloth{collision: col.clone(), ..d}, Cloth{collision: col, ..c}];
+            colliders.push(Collider { name: "f".into(), shape: Shape::Plane, positions: vec![Vector::new(0.,0.,-0.5), Vector::new(0.,0.,0.5)], thickness: 0.0, friction: 0.3 }); }
+        "halfsphere" => colliders.push(col("ball", Shape::Sphere{radius:0.4}, vec![Vector::new(1.0,0.0,-0.05)])),
+        "midsphere" => colliders.push(col("ball", Shape::Sphere{radius:0.4}, vec![Vector::new(0.0,0.0,-0.05)])),
+        "halfbox" => colliders.push(col("box", Shape::cuboid(), (0..8).map(|i| { let s=0.3; let v=Vector::new(if i&1>0 {s} else {-s}, if i&2>0 {s} else {-s}, if i&4>0 {s} else {-s}); v+Vector::new(1.0,0.,-0.2)}).collect())),
+        "midbox" => colliders.push(col("box", Shape::cuboid(), (0..8).map(|i| { let s=0.3; let v=Vector::new(if i&1>0 {s} else {-s}, if i&2>0 {s} else {-s}, if i&4>0 {s} else {-s}); v+Vector::new(0.0,0.,-0.2)}).collect())),
+        "foldself" => { // a sheet bent so that its end passes through itself
+            let mut p = pos.clone(); for v in p.iter_mut() { let s = (v.x+1.0)/2.0; let a = s*6.9; let r=0.3; v.x = r*a.cos(); v.z = r*a.sin() + 0.001*v.y + 0.02*(s-0.5); }
+            let c = Cloth::from_mesh("roll", mesh.clone(), p, &Mass::Density(0.2), material.clone(), vec![]).unwrap(); let col = cloths[0].collision.clone(); cloths = vec![Cloth{collision: col, ..c}];
+            colliders.push(Collider { name: "f".into(), shape: Shape::Plane, positions: vec![Vector::new(0.,0.,-0.5), Vector::new(0.,0.,0.5)], thickness: 0.0, friction: 0.3 }); }
         _ => {}
     }
     let settings = Settings { integrator: if env("IE",0)==1 { IntegratorKind::ImplicitEuler } else if env("SE",0)==1 { IntegratorKind::SymplecticEuler } else { IntegratorKind::Bdf2 }, perturbation: 1e-6, threads: env("THREADS",2), step_size: match env("SUB",0u32) {0=>StepSize::Auto, k=>StepSize::Substeps(k)}, ..Default::default() };

@@ -32,6 +32,9 @@ const RAMP: f64 = 0.25;
 /// A pair keeps no more between it than this part of its distance at rest.
 const OF_REST: f64 = 0.9;
 
+/// What is inside a body comes out by this part of its depth a step, and by half a thickness at the least.
+const OUT: f64 = 0.05;
+
 /// Distances (m) below this have no direction.
 const NOWHERE: f64 = 1e-12;
 
@@ -49,6 +52,8 @@ pub(super) struct Contact {
     reach: f64,
     /// N/m
     stiffness: f64,
+    /// Mass that it feels over h'² (N/m).
+    pub(super) inertia: f64,
     pub(super) friction: f64,
 }
 
@@ -99,8 +104,7 @@ impl Near {
     /// The contact of the features, if they come near enough.
     pub(super) fn contact(&self, candidate: &Candidate, bodies: &Bodies) -> Option<Contact> {
         let Self { closest, normal, distance, nearest, thickness, .. } = *self;
-        let is_near = nearest < thickness && distance > -thickness;
-        if !is_near || closest.offset.norm() < NOWHERE || !candidate.speaks_for(closest.feature) {
+        if nearest >= thickness || closest.offset.norm() < NOWHERE || !candidate.speaks_for(closest.feature) {
             return None;
         }
         let points = candidate.points;
@@ -109,7 +113,7 @@ impl Near {
             let rest = candidate.closest(|point| bodies.rest[point as usize]).offset.norm();
             thickness.min(OF_REST * rest)
         } else {
-            thickness
+            thickness.min(way_out(distance, thickness))
         };
         let [one, other] = owners.map(|body| bodies.bodies[body as usize].friction);
         (nearest < reach).then_some(Contact {
@@ -119,12 +123,32 @@ impl Near {
             distance,
             reach,
             stiffness: 0.0,
+            inertia: 0.0,
             friction: (one * other).sqrt(),
         })
     }
 }
 
+/// The gap (m) that a step may end with at the most if it starts with this one.
+fn way_out(distance: f64, thickness: f64) -> f64 {
+    if distance < 0.0 { distance + (0.5 * thickness).max(-OUT * distance) } else { thickness }
+}
+
 impl Contact {
+    /// What pushes tangled points apart along a direction, some way (m) a step.
+    pub(super) fn parting(points: [u32; 4], weights: [f64; 4], normal: Vector, way: f64) -> Self {
+        Self {
+            points,
+            weights,
+            normal,
+            distance: 0.0,
+            reach: way,
+            stiffness: 0.0,
+            inertia: 0.0,
+            friction: 0.0,
+        }
+    }
+
     /// The contact of a particle with a plane through a point with a normal, if it comes near enough.
     pub(super) fn with_plane(
         [particle, origin]: [u32; 2],
@@ -135,15 +159,17 @@ impl Contact {
         let sides = [particle, origin].map(|point| bodies.body(point));
         let [start, step] = [&paths.start, &paths.step]
             .map(|of| normal.dot(&(of[particle as usize] - of[origin as usize])));
-        let reach = sides[0].thickness + sides[1].thickness;
+        let thickness = sides[0].thickness + sides[1].thickness;
+        let reach = thickness.min(way_out(start, thickness));
         let friction = (sides[0].friction * sides[1].friction).sqrt();
-        (start.min(start + step) < reach).then_some(Self {
+        (start.min(start + step) < thickness).then_some(Self {
             points: [particle, origin, origin, origin],
             weights: [1.0, -1.0, 0.0, 0.0],
             normal,
             distance: start,
             reach,
             stiffness: 0.0,
+            inertia: 0.0,
             friction,
         })
     }
@@ -158,9 +184,11 @@ impl Contact {
             self.stiffness = 0.0;
             return;
         }
-        let near = 0.5 * self.reach / self.distance.max(NOWHERE);
+        // What is inside already comes out slowly.
+        let near = if self.distance > 0.0 { 0.5 * self.reach / self.distance } else { 1.0 };
         let closeness = (near * near).clamp(1.0, STIFFEST);
-        self.stiffness = STIFFNESS * closeness / (by_mass * h * h);
+        self.inertia = 1.0 / (by_mass * h * h);
+        self.stiffness = STIFFNESS * closeness * self.inertia;
     }
 
     /// Gap (m) where the points are `moved` (m) from their starts, summed by weights.
@@ -173,7 +201,7 @@ impl Contact {
     #[inline]
     pub(super) fn force(&self, gap: f64) -> [f64; 2] {
         let depth = self.reach - gap;
-        let ramp = RAMP * self.reach;
+        let ramp = RAMP * self.reach.abs();
         if depth <= 0.0 {
             [0.0, 0.0]
         } else if depth < ramp {
@@ -188,7 +216,7 @@ impl Contact {
     #[cfg(test)]
     pub(super) fn energy(&self, gap: f64) -> f64 {
         let depth = (self.reach - gap).max(0.0);
-        let ramp = RAMP * self.reach;
+        let ramp = RAMP * self.reach.abs();
         if depth < ramp {
             self.stiffness * depth.powi(3) / (6.0 * ramp)
         } else {

@@ -27,6 +27,9 @@ pub(super) const MOST: f64 = 2e-5;
 /// Rounding (m) of gaps, far below those that must be left.
 const ROUNDING: f64 = 1e-12;
 
+/// Vectors (m) no longer than this have no direction.
+const NO_DIRECTION: f64 = 1e-9;
+
 /// A direction along which features are less than this part of their distance apart is ill-defined.
 const CLEAR: f64 = 0.7;
 
@@ -61,6 +64,10 @@ pub(super) fn cut(candidate: &Candidate, bodies: &Bodies, paths: &Paths) -> Opti
     let offset = candidate.closest(start_of).offset;
     let length = offset.norm();
     let distance = length - radius;
+    // What is inside a sphere already has to come out.
+    if distance <= 0.0 && radius > 0.0 {
+        return None;
+    }
     let normal = offset / length;
     let [near, far] = gap(&normal, &start_of);
     if !(near - far >= CLEAR * distance && near - far > 0.0) {
@@ -71,13 +78,16 @@ pub(super) fn cut(candidate: &Candidate, bodies: &Bodies, paths: &Paths) -> Opti
     if wanted_near - wanted_far >= need - ROUNDING {
         return None;
     }
-    let other = candidate.closest(end_of).offset.normalize();
+    // Features that meet, or change sides, leave no direction.
+    let direction = |sum: Vector| sum.try_normalize(NO_DIRECTION);
+    let other = direction(candidate.closest(end_of).offset);
+    let between = other.and_then(|other| direction(normal + other));
     let is_safe = |normal: Vector| {
         let [near, far] = gap(&normal, &start_of);
         let [wanted_near, wanted_far] = gap(&normal, &end_of);
         (near - far).min(wanted_near - wanted_far) >= need - ROUNDING
     };
-    if is_safe(other) || is_safe((normal + other).normalize()) {
+    if other.is_some_and(is_safe) || between.is_some_and(is_safe) {
         return None;
     }
     let offsets = if second.iter().all(|&point| !paths.is_free(point)) {

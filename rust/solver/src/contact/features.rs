@@ -17,7 +17,12 @@ pub(super) struct Triangle {
 pub(super) struct Edge {
     pub(super) points: [u32; 2],
     pub(super) owned: u8,
+    /// The third points of its first two triangles, or [`NONE`].
+    pub(super) apexes: [u32; 2],
 }
+
+/// In the place of a point that is not there.
+pub(super) const NONE: u32 = u32::MAX;
 
 /// All features of one side.
 #[derive(Clone, Debug, Default)]
@@ -51,16 +56,20 @@ impl Features {
             self.triangles.push(Triangle { points, owned });
         }
         sides.sort_unstable();
-        sides.dedup_by_key(|&mut (ends, ..)| ends);
         let (edges, points) = (&mut self.edges, &mut self.points);
-        for (ends, place, i) in sides {
+        for same in sides.chunk_by(|(one, ..), (other, ..)| one == other) {
+            let (ends, place, i) = same[0];
             self.triangles[place].owned |= 8 << i;
+            let mut apexes = [NONE; 2];
+            for (apex, &(_, place, i)) in apexes.iter_mut().zip(same) {
+                *apex = self.triangles[place].points[(i + 2) % 3];
+            }
             let mut owned = 0;
             for (i, end) in ends.into_iter().enumerate() {
                 // The triangles' marks are used up: an end that is still marked has no edge yet.
                 owned |= u8::from(std::mem::take(&mut is_owned[end as usize])) << i;
             }
-            edges.push(Edge { points: ends.map(|end| base + end), owned });
+            edges.push(Edge { points: ends.map(|end| base + end), owned, apexes });
         }
         let mut used: Vec<u32> = mesh.faces().flatten().map(|vertex| base + vertex).collect();
         used.sort_unstable();
@@ -74,7 +83,7 @@ impl Features {
 
     pub(super) fn add_edge(&mut self, points: [u32; 2]) {
         self.points.extend(points);
-        self.edges.push(Edge { points, owned: 0b11 });
+        self.edges.push(Edge { points, owned: 0b11, apexes: [NONE; 2] });
     }
 }
 

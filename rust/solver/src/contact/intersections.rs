@@ -7,21 +7,28 @@ use boucle_geometry::{Vector, edge_crosses_triangle};
 
 use super::Contacts;
 use super::features::{Edge, Triangle};
+use super::recovery::{Crossing, Tangle};
 use crate::state::Coordinates;
 
 impl Contacts {
     /// Counts the intersections of particles at these positions (m) with each other and with the colliders where they are.
     pub(crate) fn intersections(&mut self, positions: &Coordinates) -> u64 {
-        self.paths.set_starts(positions);
-        self.paths.step.fill(Vector::zeros());
         let first = self.bodies.particle_count;
         self.paths.start[first..].copy_from_slice(&self.frame[0]);
-        self.fit(|body| body.radius);
-        (self.crossings().len() + self.too_near().len() + self.behind_planes().len()) as u64
+        self.stand_still(positions);
+        self.tangle = Tangle::of(self.crossings(), self.bodies.rest.len());
+        (self.tangle.crossings.len() + self.too_near().len() + self.behind_planes().len()) as u64
     }
 
-    /// The points of each edge, and of the triangle that it passes through.
-    fn crossings(&self) -> Vec<[u32; 5]> {
+    /// Fits all boxes to particles at these positions (m) that do not move, nor do the colliders.
+    pub(super) fn stand_still(&mut self, positions: &Coordinates) {
+        self.paths.set_starts(positions);
+        self.paths.step.fill(Vector::zeros());
+        self.fit(|body| body.radius);
+    }
+
+    /// Each edge with a triangle that it passes through.
+    pub(super) fn crossings(&self) -> Vec<Crossing> {
         let Self { bodies, cloths, colliders, .. } = self;
         let (own, others) = (&bodies.cloths, &bodies.colliders);
         let mut found = cloths.edges.pairs_with(&cloths.triangles, |edge, triangle, found| {
@@ -36,7 +43,7 @@ impl Contacts {
         found
     }
 
-    fn cross(&self, edge: &Edge, triangle: &Triangle, found: &mut Vec<[u32; 5]>) {
+    fn cross(&self, edge: &Edge, triangle: &Triangle, found: &mut Vec<Crossing>) {
         let ([p, q], [a, b, c]) = (edge.points, triangle.points);
         if [a, b, c].contains(&p) || [a, b, c].contains(&q) {
             return;
@@ -50,7 +57,7 @@ impl Contacts {
         if may_touch
             && edge_crosses_triangle(edge.points.map(place), triangle.points.map(place))
         {
-            found.push([p, q, a, b, c]);
+            found.push(Crossing { edge: *edge, triangle: *triangle });
         }
     }
 

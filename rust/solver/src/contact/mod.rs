@@ -18,6 +18,7 @@ mod friction;
 mod half_space;
 mod intersections;
 mod paths;
+mod recovery;
 mod response;
 mod search;
 mod matrix;
@@ -36,8 +37,20 @@ use candidate::Candidate;
 use contact::{Contact, Near};
 use features::Trees;
 use paths::Paths;
+use recovery::Tangle;
 pub(crate) use response::Response;
 pub(crate) use matrix::ContactMatrix;
+
+/// What a contact does at a guess.
+#[derive(Clone, Copy, Debug, Default)]
+struct Pressure {
+    /// N, along its normal.
+    force: f64,
+    /// N/m
+    slope: f64,
+    /// N/m, across its normal.
+    resistance: f64,
+}
 
 /// Everything that touches, and how.
 #[derive(Debug)]
@@ -51,6 +64,8 @@ pub(crate) struct Contacts {
     /// Where the colliders' points are (m) at the start and at the end of the frame.
     frame: [Vec<Vector>; 2],
     contacts: Vec<Contact>,
+    /// What has passed through.
+    tangle: Tangle,
     /// Candidates that may meet on ways near those that were expected, and those ways (m).
     watched: Vec<Candidate>,
     expected: Vec<Vector>,
@@ -58,8 +73,8 @@ pub(crate) struct Contacts {
     is_safe: bool,
     safe: Vec<Vector>,
     pub(crate) matrix: ContactMatrix,
-    /// Force (N) and slope (N/m) along each contact at the present guess.
-    pressures: Vec<[f64; 2]>,
+    /// What each contact does at the present guess.
+    pressures: Vec<Pressure>,
     /// Vertices that were cut short since they were last counted.
     clipped: u32,
 }
@@ -75,6 +90,7 @@ impl Contacts {
             origins: bodies.rest.clone(),
             frame: [of_colliders.to_vec(), of_colliders.to_vec()],
             contacts: Vec::new(),
+            tangle: Tangle::default(),
             watched: Vec::new(),
             expected: vec![Vector::zeros(); bodies.rest.len()],
             is_safe: false,
@@ -141,16 +157,22 @@ impl Contacts {
 
     /// Starts a step over a part of a frame, from and to, of so many parts, with particles at these positions (m).
     pub(crate) fn start_step(&mut self, part: [u32; 2], count: u32, positions: &Coordinates) {
-        self.paths.set_starts(positions);
-        let at = |step: u32| f64::from(step) / f64::from(count);
-        let [from, to] = &self.frame;
-        let ways = from.iter().zip(to).enumerate();
-        for (index, (from, to)) in ways {
-            let point = self.bodies.particle_count + index;
-            let [start, end] = part.map(|part| from + at(part) * (to - from));
+        let at = |part: u32, from: &Vector, to: &Vector| {
             // What arrives is exactly there.
-            let end = if part[1] == count { *to } else { end };
-            (self.paths.start[point], self.paths.step[point]) = (start, end - start);
+            if part == count { *to } else { from + f64::from(part) / f64::from(count) * (to - from) }
+        };
+        let first = self.bodies.particle_count;
+        let [from, to] = &self.frame;
+        for ((start, from), to) in self.paths.start[first..].iter_mut().zip(from).zip(to) {
+            *start = at(part[0], from, to);
+        }
+        self.paths.set_starts(positions);
+        self.follow_tangle(positions);
+        let [from, to] = &self.frame;
+        let Paths { start, step, .. } = &mut self.paths;
+        let ways = start[first..].iter().zip(&mut step[first..]);
+        for ((start, step), (from, to)) in ways.zip(from.iter().zip(to)) {
+            *step = at(part[1], from, to) - start;
         }
         self.origins.copy_from_slice(&self.paths.start);
     }
@@ -180,6 +202,7 @@ impl Contacts {
             }
         });
         let mut contacts: Vec<Contact> = found.iter().filter_map(|(_, contact)| *contact).collect();
+        contacts.extend(self.parting());
         self.watched = found.into_iter().map(|(candidate, _)| candidate).collect();
         self.each_plane(|particle, plane, normal| {
             let points = [particle, plane.points[0]];
@@ -189,7 +212,7 @@ impl Contacts {
         self.contacts = contacts;
         self.matrix.join(&self.contacts, inverse_masses);
         self.pressures.clear();
-        self.pressures.resize(self.contacts.len(), [0.0; 2]);
+        self.pressures.resize(self.contacts.len(), Pressure::default());
     }
 
     /// Adds the forces (N) of contacts at these positions (m) to the residual, and freezes their tangents, in a step of h
@@ -213,11 +236,14 @@ impl Contacts {
                 }
                 let normal = &contact.normal;
                 slip -= normal * normal.dot(&slip);
-                let pressed = pressure[0];
-                *pressure = contact.force(contact.gap(&way));
-                let resistance =
-                    friction::resistance(contact.friction, pressed, slip.norm(), h);
-                (normal * pressure[0] - resistance * slip, [pressure[1], resistance])
+                let free = slip.norm() * (1.0 + pressure.resistance / contact.inertia);
+                let strength = contact.friction * pressure.force;
+                let slipping = (free - strength / contact.inertia).max(0.0);
+                let most = friction::FIRMEST * contact.inertia;
+                let resistance = friction::resistance(strength, slipping, h).min(most);
+                let [force, slope] = contact.force(contact.gap(&way));
+                *pressure = Pressure { force, slope, resistance };
+                (normal * force - resistance * slip, [slope, resistance])
             })
             .collect();
         let (forces, factors): (Vec<_>, Vec<_>) = pushed.into_iter().unzip();
@@ -235,7 +261,7 @@ impl Contacts {
                 let step = moves.0.each_ref().map(|axis| f64::from(axis[point as usize]));
                 weight * contact.normal.dot(&Vector::from(step))
             });
-            pressure[0] = (pressure[0] - pressure[1] * along.sum::<f64>()).max(0.0);
+            pressure.force = (pressure.force - pressure.slope * along.sum::<f64>()).max(0.0);
         });
     }
 

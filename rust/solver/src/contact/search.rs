@@ -20,7 +20,12 @@ impl Contacts {
         is_changed: Option<&[bool]>,
         visit: impl Fn(Candidate, &mut Vec<T>) + Sync,
     ) -> Vec<T> {
-        let Self { bodies, cloths, colliders, .. } = self;
+        let Self { bodies, cloths, colliders, tangle, .. } = self;
+        let visit = |candidate: Candidate, found: &mut Vec<T>| {
+            if !tangle.lets_go(&candidate) {
+                visit(candidate, found);
+            }
+        };
         let search = Search { bodies, cloths, colliders, is_changed, visit };
         let mut found = search.points_and_triangles_of_cloths();
         found.extend(search.edges_of_cloths());

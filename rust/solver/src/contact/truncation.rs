@@ -70,8 +70,11 @@ impl Contacts {
         self.each_plane(|particle, plane, normal| {
             let origin = paths.end(plane.points[0]);
             let gap = normal.dot(&(paths.end(particle) - origin));
-            if paths.is_free(particle) && gap < LEAST {
-                let offset = normal.dot(&origin) + LEAST;
+            // What starts behind comes out by contact, and goes no deeper.
+            let start = paths.start[particle as usize] - paths.start[plane.points[0] as usize];
+            let least = LEAST.min(normal.dot(&start));
+            if paths.is_free(particle) && gap < least {
+                let offset = normal.dot(&origin) + least;
                 cutting.half_spaces.push(HalfSpace { point: particle, normal, offset });
             }
         });

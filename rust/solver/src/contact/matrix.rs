@@ -31,6 +31,8 @@ struct Tangent {
     /// k - c and c.
     along: f32,
     all_around: f32,
+    /// Whether a point takes part that does not move by itself.
+    is_held: bool,
 }
 
 /// All contacts of a step.
@@ -46,6 +48,9 @@ pub(crate) struct ContactMatrix {
     chunks: Vec<u32>,
     /// What each contact feels: scratch of a product.
     forces: Mutex<Vec<[f32; 3]>>,
+    /// L⁻¹ of `L Lᵀ = I + C/inertia` for each particle that takes part, C the block that contacts add to it: xx, yx, yy, zx,
+    /// zy, zz.
+    roots: Vec<Entries<f32>>,
 }
 
 impl ContactMatrix {
@@ -61,9 +66,11 @@ impl ContactMatrix {
                 normal: contact.normal.map(|x| x as f32).into(),
                 along: 0.0,
                 all_around: 0.0,
+                is_held: false,
             };
             for i in 0..4 {
                 if !moves(tangent.points[i]) {
+                    tangent.is_held |= tangent.weights[i] != 0.0;
                     (tangent.points[i], tangent.weights[i]) = (0, 0.0);
                 }
             }
@@ -109,6 +116,14 @@ impl ContactMatrix {
                 *place += 1;
             }
         }
+    }
+
+    /// The particles that each contact joins, and whether it joins them to something held.
+    pub(crate) fn joints(&self) -> impl Iterator<Item = (impl Iterator<Item = u32>, bool)> {
+        self.tangents.iter().map(|tangent| {
+            let ends = tangent.points.into_iter().zip(tangent.weights);
+            (ends.filter(|end| end.1 != 0.0).map(|end| end.0), tangent.is_held)
+        })
     }
 
     /// The particles that take part, in order.
@@ -192,6 +207,69 @@ impl ContactMatrix {
         }
     }
 
+    /// Weighs what contacts add to each particle against its inertia (kg/s²).
+    pub(crate) fn weigh(&mut self, inertia: &[f32]) {
+        let mut roots = std::mem::take(&mut self.roots);
+        let places = (0..self.particles.len()).into_par_iter().with_min_len(CONTACTS);
+        let each = places.map(|place| {
+            let mut block = [1.0, 0.0, 1.0, 0.0, 0.0, 1.0];
+            let by_inertia = 1.0 / inertia[self.particles[place] as usize];
+            for (contact, weight) in self.incidences_of(place) {
+                let Tangent { normal: [x, y, z], along, all_around, .. } =
+                    self.tangents[contact as usize];
+                let square = weight * weight * by_inertia;
+                let products = [x * x, y * x, y * y, z * x, z * y, z * z];
+                for (entry, product) in block.iter_mut().zip(products) {
+                    *entry += square * along * product;
+                }
+                for entry in [0, 2, 5] {
+                    block[entry] += square * all_around;
+                }
+            }
+            inverse_root(block)
+        });
+        each.collect_into_vec(&mut roots);
+        self.roots = roots;
+    }
+
+    /// `p = L⁻¹ p` for the particles that take part; returns what they had.
+    pub(crate) fn lighten(&self, p: &mut Field) -> Vec<[f32; 3]> {
+        self.change(p, |[xx, yx, yy, zx, zy, zz], [x, y, z]| {
+            [xx * x, yx * x + yy * y, zx * x + zy * y + zz * z]
+        })
+    }
+
+    /// `p = L⁻ᵀ p` for the particles that take part.
+    pub(crate) fn lighten_transposed(&self, p: &mut Field) {
+        self.change(p, |[xx, yx, yy, zx, zy, zz], [x, y, z]| {
+            [xx * x + yx * y + zx * z, yy * y + zy * z, zz * z]
+        });
+    }
+
+    /// Gives the particles that take part these vectors.
+    pub(crate) fn put_back(&self, vectors: &[[f32; 3]], p: &mut Field) {
+        for (&particle, vector) in self.particles.iter().zip(vectors) {
+            for (axis, value) in p.0.iter_mut().zip(vector) {
+                axis[particle as usize] = *value;
+            }
+        }
+    }
+
+    fn change(
+        &self,
+        p: &mut Field,
+        by: impl Fn(&Entries<f32>, [f32; 3]) -> [f32; 3],
+    ) -> Vec<[f32; 3]> {
+        let change = |(&particle, root): (&u32, &Entries<f32>)| {
+            let before = p.0.each_ref().map(|axis| axis[particle as usize]);
+            for (axis, value) in p.0.iter_mut().zip(by(root, before)) {
+                axis[particle as usize] = value;
+            }
+            before
+        };
+        self.particles.iter().zip(&self.roots).map(change).collect()
+    }
+
     fn places(&self, chunk: usize) -> std::ops::Range<usize> {
         self.chunks[chunk] as usize..self.chunks[chunk + 1] as usize
     }
@@ -200,6 +278,19 @@ impl ContactMatrix {
         let incidences = self.starts[place] as usize..self.starts[place + 1] as usize;
         self.incidences[incidences].iter().copied()
     }
+}
+
+/// L⁻¹ of a block `L Lᵀ`.
+fn inverse_root([xx, yx, yy, zx, zy, zz]: Entries<f32>) -> Entries<f32> {
+    // The blocks are no less than the identity; rounding must not make them so.
+    let x = 1.0 / xx.max(1.0).sqrt();
+    let (lyx, lzx) = (yx * x, zx * x);
+    let y = 1.0 / (yy - lyx * lyx).max(1.0).sqrt();
+    let lzy = (zy - lzx * lyx) * y;
+    let z = 1.0 / (zz - lzx * lzx - lzy * lzy).max(1.0).sqrt();
+    let inverse_yx = -lyx * x * y;
+    let inverse_zx = -(lzx * x + lzy * inverse_yx) * z;
+    [x, inverse_yx, y, inverse_zx, -lzy * y * z, z]
 }
 
 impl Tangent {

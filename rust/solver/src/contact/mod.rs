@@ -122,6 +122,15 @@ impl Contacts {
         std::mem::take(&mut self.clipped)
     }
 
+    /// The particles that contacts press, some of them more than once.
+    pub(crate) fn pressed(&self) -> impl Iterator<Item = u32> {
+        let pressed = self.contacts.iter().zip(&self.pressures);
+        let pressed = pressed.filter(|(_, pressure)| pressure.force > 0.0);
+        let points = pressed.flat_map(|(contact, _)| contact.points.into_iter().zip(contact.weights));
+        let free = points.filter(|&(point, weight)| weight != 0.0 && self.paths.is_free(point));
+        free.map(|(point, _)| point)
+    }
+
     /// Where the points of all colliders are (m).
     pub(crate) fn collider_positions(&self) -> &[Vector] {
         &self.frame[0]

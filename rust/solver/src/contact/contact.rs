@@ -118,7 +118,7 @@ impl Near {
         } else {
             thickness.min(way_out(distance, thickness))
         };
-        let [one, other] = owners.map(|body| bodies.bodies[body as usize].friction);
+        let [one, other] = owners.map(|body| bodies.each[body as usize].friction);
         (nearest < reach).then_some(Contact {
             points,
             weights: closest.weights,

@@ -1,6 +1,8 @@
 //! Contact held to brute force over all pairs, and its forces to their energy.
 
-use boucle_geometry::{Mesh, Vector, edge_crosses_triangle, edge_edge_impact, point_triangle_impact};
+use boucle_geometry::{
+    Mesh, Vector, edge_crosses_triangle, edge_edge_impact, point_triangle_impact,
+};
 use nalgebra::DMatrix;
 
 use super::candidate::Kind;
@@ -445,15 +447,19 @@ fn truncated(
 #[test]
 fn truncated_ways_lead_through_nothing_by_brute_force() {
     for seed in 0..4 {
-        for cloths in [vec![soup(4, 1000 * seed)], vec![folded(seed)], vec![folded(seed), soup(3, 77 + seed)]] {
+        for cloths in
+            [vec![soup(4, 1000 * seed)], vec![folded(seed)], vec![folded(seed), soup(3, 77 + seed)]]
+        {
             for amplitude in [0.003, 0.03, 0.3] {
                 let wanted = |starts: &[Vector]| moved(starts, amplitude, 31 * seed);
                 // As expected, a little off it, and not expected at all.
                 let little = |starts: &[Vector]| moved(&wanted(starts), 0.002, 5);
                 let still = |starts: &[Vector]| starts.to_vec();
-                let expectations: [&dyn Fn(&[Vector]) -> Vec<Vector>; 3] = [&wanted, &little, &still];
+                let expectations: [&dyn Fn(&[Vector]) -> Vec<Vector>; 3] =
+                    [&wanted, &little, &still];
                 for (number, expected) in expectations.iter().enumerate() {
-                    let (contacts, clipped, [starts, _, ends]) = truncated(&cloths, expected, wanted);
+                    let (contacts, clipped, [starts, _, ends]) =
+                        truncated(&cloths, expected, wanted);
                     let found = passes(&contacts, &starts, &ends);
                     assert!(found.is_empty(), "seed {seed}, {amplitude} m, {number}: {found:?}");
                     assert!(amplitude < 0.1 || clipped > 0, "nothing was to be cut");
@@ -506,7 +512,10 @@ fn truncation_cuts_only_those_that_meet() {
 #[test]
 fn truncated_ways_stay_out_of_colliders_that_move() {
     let flat: Vec<Vector> = (0..100)
-        .map(|i| Vector::new(f64::from(i % 10), f64::from(i / 10), 0.0) * 0.05 + 0.002 * random(i as usize))
+        .map(|i| {
+            Vector::new(f64::from(i % 10), f64::from(i / 10), 0.0) * 0.05
+                + 0.002 * random(i as usize)
+        })
         .collect();
     let faces: Vec<Vec<u32>> = (0..9_u32)
         .flat_map(|row| (0..9).map(move |column| 10 * row + column))
@@ -519,14 +528,23 @@ fn truncated_ways_stay_out_of_colliders_that_move() {
     };
     let shapes = [
         (Shape::Sphere { radius: 0.1 }, vec![Vector::new(0.23, 0.22, -0.11)]),
-        (Shape::Capsule { radius: 0.05 }, vec![Vector::new(0.1, 0.1, -0.06), Vector::new(0.4, 0.3, -0.06)]),
+        (
+            Shape::Capsule { radius: 0.05 },
+            vec![Vector::new(0.1, 0.1, -0.06), Vector::new(0.4, 0.3, -0.06)],
+        ),
         (Shape::cuboid(), (0..8).map(corner).collect()),
         (Shape::Plane, vec![Vector::new(0.0, 0.0, -0.01), Vector::new(0.0, 0.0, 1.0)]),
     ];
     for (shape, positions) in shapes {
         for (speed, amplitude) in [(0.0, 0.2), (0.05, 0.002), (0.3, 0.05)] {
             let name = "collider".to_owned();
-            let collider = Collider { name, shape: shape.clone(), positions: positions.clone(), thickness: 0.0, friction: 0.3 };
+            let collider = Collider {
+                name,
+                shape: shape.clone(),
+                positions: positions.clone(),
+                thickness: 0.0,
+                friction: 0.3,
+            };
             let (mut contacts, starts, inverse_masses) = contacts(&cloths, &[collider]);
             let targets: Vec<Vector> = positions.iter().map(|x| x + speed * Vector::z()).collect();
             contacts.aim(0, &targets);

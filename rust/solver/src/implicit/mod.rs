@@ -209,7 +209,7 @@ impl Implicit {
             let velocity = self.at.velocity.0[axis].iter_mut();
             let base = self.base.position.0[axis].iter();
             for (((x, v), reached), base) in position.zip(velocity).zip(reached.iter()).zip(base) {
-                if *x != *reached {
+                if x.to_bits() != reached.to_bits() {
                     *x = *reached;
                     *v = (*x - base) / h;
                 }

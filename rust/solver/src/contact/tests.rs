@@ -218,9 +218,9 @@ fn detection_finds_the_contacts_and_the_pairs_to_watch_that_all_pairs_have() {
                     .iter()
                     .filter(|pair| near(pair).contact(pair, &contacts.bodies).is_some())
                     .collect();
-                assert_eq!(with_contact.len(), contacts.contacts.len(), "{number}, {amplitude}");
+                assert_eq!(with_contact.len(), contacts.near.len(), "{number}, {amplitude}");
                 let mut expected: Vec<_> = with_contact.iter().map(|pair| pair.points).collect();
-                let mut found: Vec<_> = contacts.contacts.iter().map(|own| own.points).collect();
+                let mut found: Vec<_> = contacts.near.iter().map(|own| own.points).collect();
                 // An edge pair may be found either way round.
                 for points in expected.iter_mut().chain(&mut found) {
                     points.sort_unstable();
@@ -261,7 +261,7 @@ fn the_same_two_features_make_one_contact_only() {
         contacts.start_step([0, 1], 1, &coordinates(&starts));
         contacts.detect(&coordinates(&moved(&starts, 0.05, 3)), &inverse_masses, H);
         let mut features: Vec<[Vec<u32>; 2]> = contacts
-            .contacts
+            .near
             .iter()
             .map(|contact| {
                 let side = |is_first: bool| {
@@ -306,7 +306,7 @@ fn pressed(friction: f64) -> (Contacts, Vec<Vector>, Vec<f64>) {
     contacts.start_step([0, 1], 1, &coordinates(&starts));
     let ends = moved(&starts, 0.002, 3);
     contacts.detect(&coordinates(&ends), &inverse_masses, H);
-    assert!(contacts.contacts.len() > 100, "{}", contacts.contacts.len());
+    assert!(contacts.near.len() > 100, "{}", contacts.near.len());
     (contacts, ends, inverse_masses)
 }
 
@@ -318,7 +318,7 @@ fn energy(contacts: &Contacts, at: &[Vector]) -> f64 {
         });
         contact.energy(contact.gap(&way.sum()))
     };
-    contacts.contacts.iter().map(of).sum()
+    contacts.near.iter().map(of).sum()
 }
 
 fn forces(contacts: &mut Contacts, at: &[Vector]) -> Vec<Vector> {
@@ -391,7 +391,7 @@ fn the_matrix_of_contacts_with_friction_is_symmetric_positive_and_below_twice_it
     forces(&mut contacts, &at);
     let matrix = matrix(&contacts, at.len());
     let largest = matrix.amax();
-    assert!(contacts.contacts.iter().any(|contact| contact.friction > 0.0) && largest > 0.0);
+    assert!(contacts.near.iter().any(|contact| contact.friction > 0.0) && largest > 0.0);
     assert!((&matrix - matrix.transpose()).amax() < 1e-6 * largest);
     let least = |matrix: DMatrix<f64>| matrix.symmetric_eigenvalues().min();
     let lowest = least(matrix.clone());

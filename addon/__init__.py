@@ -6,14 +6,14 @@ Registration is a transaction: all steps or none.
 import bpy
 
 from . import handlers, native, preferences
-from .bridge import live, runtime
+from .bridge import live, runtime, thickness_view
 from .core.transaction import Step, apply_all, revert_all
 from .operators import add, bake
 from .operators import cache as cache_operators
 from .operators import cloth as cloth_operators
 from .panels import cache as cache_panels
 from .panels import cloth as cloth_panels
-from .panels import forces, shape, solver, springs
+from .panels import collisions, forces, shape, solver, springs
 from .properties import cloth as cloth_properties
 
 _CLASSES = (
@@ -26,6 +26,7 @@ _CLASSES = (
     *cloth_panels.CLASSES,
     *springs.CLASSES,
     *shape.CLASSES,
+    *collisions.CLASSES,
     *forces.CLASSES,
     *solver.CLASSES,
     *cache_panels.CLASSES,
@@ -51,6 +52,7 @@ _STEPS = (
         lambda: bpy.types.PHYSICS_PT_add.remove(cloth_panels.draw_button),
     ),
     Step(handlers.register, handlers.unregister),
+    Step(lambda: None, thickness_view.end),
     Step(lambda: None, live.drop_all),
 )
 

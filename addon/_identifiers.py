@@ -24,6 +24,9 @@ class Panels:
     DAMPING = "BOUCLE_PT_damping"
     DEFORMATION = "BOUCLE_PT_deformation"
     SHAPE = "BOUCLE_PT_shape"
+    COLLISIONS = "BOUCLE_PT_collisions"
+    OBJECT_COLLISIONS = "BOUCLE_PT_object_collisions"
+    SELF_COLLISIONS = "BOUCLE_PT_self_collisions"
     FORCES = "BOUCLE_PT_forces"
     SOLVER = "BOUCLE_PT_solver"
     SOLVER_ADVANCED = "BOUCLE_PT_solver_advanced"
@@ -41,6 +44,12 @@ REST_ATTRIBUTE = "boucle_rest"
 
 STRAIN_ATTRIBUTE = "boucle_strain"
 """Point attribute: the largest strain of the edges at each vertex in the frame that is shown."""
+
+CONTACT_ATTRIBUTE = "boucle_contact"
+"""Point attribute: the force (N) with which contacts press on each vertex in the frame that is shown."""
+
+INTERSECTION_ATTRIBUTE = "boucle_intersection"
+"""Point attribute: in how many intersections each vertex takes part in the frame that is shown."""
 
 REST_COUNT = "boucle_rest_count"
 """Custom property of a mesh beside that attribute: how many vertices it had when the rest shape was kept."""

@@ -45,7 +45,7 @@ OUTSIDE = {
     "_identifiers": set(),
     "core": {"numpy"},
     "native": {"boucle_core"},
-    "bridge": {"bpy", "bmesh", "mathutils"},
+    "bridge": {"bpy", "bmesh", "gpu", "mathutils"},
     "properties": {"bpy"},
     "operators": {"bpy", "bmesh", "bpy_extras", "mathutils"},
     "handlers": {"bpy"},

@@ -17,7 +17,19 @@ from ..core import drift, points, progress, report
 from ..core.bake import Plan, Pose, Step, Store
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, sentence_of
-from . import cache, live, preflight, registry, runtime, sampling, settings, simulation, slot
+from . import (
+    cache,
+    live,
+    preflight,
+    registry,
+    runtime,
+    sampling,
+    settings,
+    simulation,
+    slot,
+    vertex_attributes,
+)
+from .colliders import Colliders
 
 
 @dataclass(frozen=True)
@@ -73,14 +85,16 @@ class Bake:
     def _steps(self) -> Iterator[Step]:
         obj, scene = self._object(), self._scene()
         preflight.refuse_errors(obj, scene)
+        start = obj.boucle.frame_start
+        depsgraph = self._go_to(start)
         description = settings.describe(obj, scene, with_groups=True)
         self._restrict(description)
-        start = description["scene"]["frames"][0]
-        depsgraph = self._go_to(start)
         sampling.refuse_other_count(obj, depsgraph)
         matrix = sampling.object_matrix(obj, depsgraph)
         rest_world = points.transform(sampling.targets(obj, depsgraph), matrix, "d")
-        build = Step(start, simulation.maker(obj, description, rest_world, self.options.threads))
+        met = Colliders(obj, scene, depsgraph)
+        make = simulation.maker(obj, description, rest_world, self.options.threads, met.arrays)
+        build = Step(start, make)
         record = self._record(obj, description)
         yield build
         solver = build.result()
@@ -90,7 +104,7 @@ class Bake:
         def pose_at(frame: int) -> Pose:
             if frame < self._began[1]:
                 self._began = (time.monotonic(), frame)
-            return self._pose(frame, is_pinned)
+            return self._pose(frame, is_pinned, met)
 
         try:
             yield from core_bake.bake(
@@ -131,7 +145,7 @@ class Bake:
             end=self.end,
             vertex_count=record["vertices"],
             digest=drift.whole_digest({**record, "end": None}),
-            keeps_strain=obj.boucle.use_strain,
+            keeps=vertex_attributes.wanted(obj),
         )
         mesh = obj.data
         cloth = {
@@ -148,9 +162,9 @@ class Bake:
         files = self.options.files or cache.own_files(obj)
         return Store(files, plan, rows, keeps_previous=self.options.files is None)
 
-    def _pose(self, frame: int, is_pinned: bool) -> Pose:
+    def _pose(self, frame: int, is_pinned: bool, met: Colliders) -> Pose:
         depsgraph = self._go_to(frame)
-        return sampling.pose(self._object(), depsgraph, is_pinned)
+        return sampling.pose(self._object(), depsgraph, is_pinned, met.targets(depsgraph))
 
     def _attach(self, record: dict[str, Any]) -> None:
         """Play what is there, if it is the object's own cache; a folder elsewhere is left alone."""
@@ -173,10 +187,7 @@ class Bake:
     def _go_to(self, frame: int) -> bpy.types.Depsgraph:
         scene = self._scene()
         scene.frame_set(frame)
-        layer = next(
-            (layer for layer in scene.view_layers if layer.objects.get(self._object().name)),
-            scene.view_layers[0],
-        )
+        layer = registry.layer_of(self._object(), scene)
         return layer.depsgraph if layer.depsgraph else bpy.context.evaluated_depsgraph_get()
 
     @contextmanager
@@ -198,12 +209,12 @@ class Bake:
             if bpy.data.scenes.get(self._scene_name) is not None:
                 self._scene().frame_set(frame, subframe=subframe)
             runtime.busy.discard("bake")
-            self._show_strain()
+            self._show_attributes()
 
-    def _show_strain(self) -> None:
+    def _show_attributes(self) -> None:
         obj, scene = registry.by_uid(self.uid), bpy.data.scenes.get(self._scene_name)
         if registry.is_cloth(obj) and scene is not None:
-            live.show_strain(obj, scene)
+            live.show_attributes(obj, scene)
 
     def _restore(self, shown: dict[str, bool]) -> None:
         obj = registry.by_uid(self.uid)

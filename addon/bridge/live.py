@@ -18,13 +18,26 @@ from typing import Any
 import bpy
 
 from .. import native
-from ..core import drift, points
+from ..core import drift, points, quantity
 from ..core.live_frames import Action, Frame, LiveFrames
 from ..core.points import Points
 from ..core.progress import size
+from ..core.quantity import Numbers
 from ..core.refusal import Refusal, sentence_of
-from . import cache, display, registry, rest, runtime, sampling, settings, simulation, strain
+from . import (
+    cache,
+    colliders,
+    display,
+    registry,
+    rest,
+    runtime,
+    sampling,
+    settings,
+    simulation,
+    vertex_attributes,
+)
 from . import slot as slots
+from .colliders import Colliders
 
 EDITING_MODES = frozenset({"EDIT", "SCULPT", "WEIGHT_PAINT"})
 """Modes in which the artist works on the rest shape or on the pins."""
@@ -39,6 +52,7 @@ class Session:
     """None after a fault: the kept frames can still be shown."""
     frames: LiveFrames
     is_pinned: bool
+    colliders: Colliders
     display: display.Display
     basis: tuple[object, ...]
     """What must not change while the session lives; looked at at every frame."""
@@ -48,6 +62,8 @@ class Session:
     """The object in its parent's space, when the last frame was shown."""
     waits: str = ""
     """Why the cloth does not move on at the present frame; empty if it does."""
+    refusal: str = ""
+    """Why the frame after the last could not be simulated when the scene stood there."""
 
 
 _sessions: dict[int, Session] = {}
@@ -70,20 +86,21 @@ def on_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     for obj in registry.cloths_of(scene):
         if _is_live(obj):
             _come_to_frame(obj, scene, depsgraph)
-        show_strain(obj, scene)
+        show_attributes(obj, scene)
 
 
-def show_strain(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
-    """Let the mesh's attribute tell the strain of the frame that is shown, if the user wants it."""
-    values = None
+def show_attributes(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
+    """Let the mesh's attributes tell of the frame that is shown what the user wants to know."""
+    numbers: Numbers = {}
     session = session_of(obj)
-    if not obj.boucle.use_strain or obj.mode in EDITING_MODES:
+    keys = vertex_attributes.wanted(obj)
+    if not keys or obj.mode in EDITING_MODES:
         pass
     elif cache.is_baked(obj):
-        values = strain.of_bake(obj, scene.frame_current)
+        numbers = vertex_attributes.of_bake(obj, scene.frame_current)
     elif session is not None and _is_live(obj):
-        values = session.frames.nearest(scene.frame_current).strain
-    strain.show(obj, values)
+        numbers = session.frames.nearest(scene.frame_current).numbers
+    vertex_attributes.show(obj, {key: numbers[key] for key in keys if key in numbers})
 
 
 def _is_live(obj: bpy.types.Object) -> bool:
@@ -136,15 +153,18 @@ def _build(
     local = rest.positions(obj.data) if is_direct else sampling.targets(obj, depsgraph)
     matrix = sampling.object_matrix(obj, depsgraph)
     sampling.inverse(obj, matrix)
-    solver = simulation.maker(obj, description, points.transform(local, matrix, "d"))()
+    met = Colliders(obj, scene, depsgraph)
+    world = points.transform(local, matrix, "d")
+    solver = simulation.maker(obj, description, world, colliders=met.arrays)()
     limit = memory_limit()
-    first = Frame(local, solver.certificate(), _read_strain(solver, obj))
+    first = Frame(local, solver.certificate(), _read_numbers(solver, obj))
     shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
     return Session(
         uid=obj.session_uid,
         solver=solver,
         frames=LiveFrames(obj.boucle.frame_start, first, limit),
         is_pinned=simulation.is_pinned(description),
+        colliders=met,
         display=shown,
         basis=_basis(obj, scene),
         settings=_settings_digest(obj, scene),
@@ -167,6 +187,7 @@ def _basis(obj: bpy.types.Object, scene: bpy.types.Scene) -> tuple[object, ...]:
         obj.boucle.frame_start,
         settings.world(scene),
         display.may_write(obj),
+        colliders.signature(obj, scene),
     )
 
 
@@ -194,16 +215,17 @@ def _step(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgrap
     if session.solver is None:
         return
     try:
-        pose = sampling.pose(obj, depsgraph, session.is_pinned)
+        targets = session.colliders.targets(depsgraph)
+        pose = sampling.pose(obj, depsgraph, session.is_pinned, targets)
     except Refusal as refusal:
-        session.waits = str(refusal)
+        session.waits = session.refusal = str(refusal)
         return
+    session.refusal = ""
     try:
-        if pose.targets is not None:
-            session.solver.set_pin_targets(0, pose.targets)
+        pose.aim(session.solver)
         certificate = session.solver.advance()
         positions = _read(session, pose.to_object, len(obj.data.vertices))
-        session.frames.add(Frame(positions, certificate, _read_strain(session.solver, obj)))
+        session.frames.add(Frame(positions, certificate, _read_numbers(session.solver, obj)))
     except native.FAILURES as error:
         session.solver = None
         _say(obj, f"{sentence_of(error)}; frames up to {session.frames.last} are kept")
@@ -219,11 +241,9 @@ def _read(session: Session, to_object: points.Affine, vertex_count: int) -> Poin
     return points.transform(world, to_object, "f")
 
 
-def _read_strain(solver: Any, obj: bpy.types.Object) -> Points | None:
-    if not obj.boucle.use_strain:
-        return None
-    out = points.empty("f", len(obj.data.vertices))
-    solver.read_strain(0, out)
+def _read_numbers(solver: Any, obj: bpy.types.Object) -> Numbers:
+    out = quantity.empty(vertex_attributes.wanted(obj), len(obj.data.vertices))
+    quantity.read(solver, out)
     return out
 
 
@@ -235,7 +255,7 @@ def _explain(session: Session, action: Action) -> str:
             "add-on's preferences"
         )
     if action is Action.WAIT:
-        return (
+        return session.refusal or (
             f"frame {last + 1} was skipped: the cloth waits at frame {last}, play on from there "
             "with Sync set to Play Every Frame"
         )
@@ -256,7 +276,7 @@ def drop(obj: bpy.types.Object) -> None:
     if session is not None:
         session.display.end(obj)
     if not runtime.rendering:
-        strain.hide(obj.data)
+        vertex_attributes.hide(obj.data)
         if rest.is_displaced(obj.data):
             rest.put_back(obj.data)
 
@@ -288,7 +308,7 @@ def revalidate(scene: bpy.types.Scene) -> None:
         session = _valid_session(obj, scene)
         if session is not None and _is_live(obj):
             session.display.show(obj, session.frames, scene.frame_current)
-        show_strain(obj, scene)
+        show_attributes(obj, scene)
 
 
 def follow_edits(depsgraph: bpy.types.Depsgraph) -> None:
@@ -328,7 +348,7 @@ def hide_all() -> None:
             session.display.hide(obj)
         if obj.type == "MESH" and obj.mode not in EDITING_MODES:
             rest.put_back(obj.data)
-            strain.hide(obj.data)
+            vertex_attributes.hide(obj.data)
 
 
 def show_all(scene: bpy.types.Scene) -> None:
@@ -337,7 +357,7 @@ def show_all(scene: bpy.types.Scene) -> None:
         session = session_of(obj)
         if session is not None and _is_live(obj):
             session.display.show(obj, session.frames, scene.frame_current)
-        show_strain(obj, scene)
+        show_attributes(obj, scene)
 
 
 def status(obj: bpy.types.Object) -> str:

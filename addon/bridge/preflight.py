@@ -11,12 +11,12 @@ from .. import native
 from ..core import mesh_check, points, scene_json
 from ..core.mesh_check import Problem, Severity
 from ..core.refusal import Refusal
-from . import cache, mesh_arrays, rest, sampling, settings, slot
+from . import animation, cache, mesh_arrays, rest, sampling, settings, slot
 
 SAMPLED_ONCE = (
     "stretch", "shear", "bend", "damping", "damping_stretch", "damping_shear", "damping_bend",
     "air_damping", "deformation_rate", "density", "mass_per_vertex", "wind_velocity",
-    "wind_coefficient", "wind_air_density",
+    "wind_coefficient", "wind_air_density", "thickness", "friction",
 )  # fmt: skip
 """Settings that may be animated in the file, of which the solver takes the first frame's value."""
 
@@ -123,7 +123,7 @@ def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem
                 "vertex is held and below it is free",
                 soft,
             )
-    animated = [name for name in SAMPLED_ONCE if _is_animated(obj, name)]
+    animated = [name for name in SAMPLED_ONCE if animation.moves(obj, f"boucle.{name}")]
     if animated:
         yield _warning(
             f'"{obj.name}": {", ".join(animated)} is animated: only its value at the start frame '
@@ -143,35 +143,11 @@ def _unsupported(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Prob
     """What a scene may hold and this version leaves out: said, never silently ignored."""
     if any(modifier.type == "CLOTH" for modifier in obj.modifiers):
         yield _warning(f'"{obj.name}" has a Cloth modifier, too: remove one of the two')
-    colliders = [o.name for o in scene.objects if any(m.type == "COLLISION" for m in o.modifiers)]
     fields = [o.name for o in scene.objects if o.field is not None and o.field.type != "NONE"]
-    for names, what in ((colliders, "collisions"), (fields, "force fields")):
-        if names:
-            yield _warning(
-                f'"{obj.name}": {what} are not supported yet, so "{names[0]}" has no effect on it'
-            )
-
-
-def _is_animated(obj: bpy.types.Object, name: str) -> bool:
-    path = f"boucle.{name}"
-    data = obj.animation_data
-    if data is None:
-        return False
-    curves = [*data.drivers, *_curves_of(data.action)]
-    return any(curve.data_path == path for curve in curves)
-
-
-def _curves_of(action: bpy.types.Action | None) -> Iterator[bpy.types.FCurve]:
-    """All curves of an action: in one list up to Blender 4.5, in layers since 4.4."""
-    if action is None:
-        return
-    if not hasattr(action, "layers"):
-        yield from action.fcurves
-        return
-    for layer in action.layers:
-        for strip in layer.strips:
-            for bag in strip.channelbags:
-                yield from bag.fcurves
+    if fields:
+        yield _warning(
+            f'"{obj.name}": force fields are not supported yet, so "{fields[0]}" has no effect on it'
+        )
 
 
 def _error(sentence: str) -> Problem:

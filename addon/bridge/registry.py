@@ -21,6 +21,17 @@ def by_uid(uid: int) -> bpy.types.Object | None:
     return next((obj for obj in bpy.data.objects if obj.session_uid == uid), None)
 
 
+def key_of(obj: bpy.types.Object) -> tuple[str, str | None]:
+    """By what an object is found at once: its name and library, which a rename changes."""
+    return obj.name, obj.library.filepath if obj.library else None
+
+
+def by_key(key: tuple[str, str | None], uid: int) -> bpy.types.Object | None:
+    """The object of a key, by its `session_uid` if it was renamed."""
+    obj = bpy.data.objects.get(key)
+    return obj if obj is not None and obj.session_uid == uid else by_uid(uid)
+
+
 def forget() -> None:
     """Look at all objects again at the next question: after undo, load, enabling."""
     global _object_count
@@ -49,6 +60,12 @@ def cloths_of(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     return [obj for obj in local_cloths() if _is_in(obj, scene)]
 
 
+def layer_of(obj: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.ViewLayer:
+    """The view layer in which a cloth is simulated: the first that holds it."""
+    layers = scene.view_layers
+    return next((layer for layer in layers if layer.objects.get(obj.name)), layers[0])
+
+
 def _is_in(obj: bpy.types.Object, scene: bpy.types.Scene) -> bool:
     found = scene.objects.get(obj.name)
     if found is None or found == obj:
@@ -59,9 +76,6 @@ def _is_in(obj: bpy.types.Object, scene: bpy.types.Scene) -> bool:
 def _look() -> list[bpy.types.Object]:
     global _object_count
     found = [obj for obj in bpy.data.objects if is_cloth(obj)]
-    _known[:] = [
-        ((obj.name, obj.library.filepath if obj.library else None), obj.session_uid)
-        for obj in found
-    ]
+    _known[:] = [(key_of(obj), obj.session_uid) for obj in found]
     _object_count = len(bpy.data.objects)
     return found

@@ -44,6 +44,7 @@ def _compute(obj: bpy.types.Object, description: dict, fps: float) -> str:
     if len(obj.data.vertices) > LARGEST or obj.data.is_editmode:
         return "Safe time step: shown after the first simulated frame"
     matrix = mesh_arrays.world_matrix(obj)
+    description = scene_json.without_contact(description)
     # A step beyond the bound is refused by the solver, and here the bound is what is asked for.
     description["solver"]["allow_unstable"] = True
     try:

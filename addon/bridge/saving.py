@@ -10,7 +10,7 @@ import bpy
 from ..core import cache_paths
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, cannot_write
-from . import cache, live, registry, rest, runtime, slot, strain
+from . import cache, live, registry, rest, runtime, slot, vertex_attributes
 
 
 def before_save(path: str) -> None:
@@ -39,7 +39,7 @@ def after_load() -> None:
     registry.forget()
     for obj in registry.local_cloths():
         rest.put_back(obj.data)
-        strain.hide(obj.data)
+        vertex_attributes.hide(obj.data)
         found = slot.find(obj)
         if found is None:
             continue
@@ -48,7 +48,7 @@ def after_load() -> None:
             slot.silence(found.cache)
     cache.ensure_identity()
     for obj in registry.cloths_of(bpy.context.scene):
-        live.show_strain(obj, bpy.context.scene)
+        live.show_attributes(obj, bpy.context.scene)
 
 
 def adopt(obj: bpy.types.Object) -> None:

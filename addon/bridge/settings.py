@@ -9,18 +9,22 @@ import bpy
 from ..core import drift, scene_json
 from ..core.refusal import Refusal
 from ..core.scene_json import Groups, World
-from . import mesh_arrays
+from . import colliders, mesh_arrays
 
 PIN_THRESHOLD = 0.5
 """Soft pins are not supported yet: from this weight on a vertex is held, below it is free."""
 
 
+ANY = 1e-6
+"""From this weight on a vertex is taken for one of a group that only includes or excludes."""
+
+
 def values(obj: bpy.types.Object) -> dict[str, Any]:
-    """Every setting by its name; vectors as tuples."""
+    """Every setting by its name, but those that point to Blender's data; vectors as tuples."""
     settings = obj.boucle
     out: dict[str, Any] = {}
     for prop in settings.bl_rna.properties:
-        if prop.identifier in {"rna_type", "name"} or prop.is_readonly:
+        if prop.identifier in {"rna_type", "name"} or prop.is_readonly or prop.type == "POINTER":
             continue
         value = getattr(settings, prop.identifier)
         out[prop.identifier] = tuple(value) if getattr(prop, "is_array", False) else value
@@ -39,21 +43,29 @@ def world(scene: bpy.types.Scene) -> World:
 
 
 def groups(obj: bpy.types.Object) -> Groups:
-    """The pinned vertices and those in the wind.
+    """The pinned vertices, those in the wind and those that do not collide.
 
     Raises:
         Refusal: A group is named that the object does not have.
     """
     settings = obj.boucle
     pins = _vertices(obj, "Pin Group", settings.pin_group, PIN_THRESHOLD)
-    wind = _vertices(obj, "Wind Group", settings.wind_group, 1e-6) if settings.use_wind else None
-    return Groups(pins or [], wind)
+    wind = _vertices(obj, "Wind Group", settings.wind_group, ANY) if settings.use_wind else None
+    not_self = not_objects = None
+    if settings.self_collision:
+        name = settings.self_collision_group
+        not_self = _vertices(obj, "Self Collision Vertex Group", name, ANY)
+    if settings.object_collision:
+        name = settings.collision_group
+        not_objects = _vertices(obj, "Object Collision Vertex Group", name, ANY)
+    return Groups(pins or [], wind, not_self or [], not_objects or [])
 
 
 def describe(obj: bpy.types.Object, scene: bpy.types.Scene, with_groups: bool) -> dict[str, Any]:
-    """The scene description of one cloth; groups take long to read and may be left out."""
+    """The scene description of one cloth among its colliders; groups take long to read and may be left out."""
     found = groups(obj) if with_groups else Groups([], None)
-    return scene_json.describe(obj.name, values(obj), world(scene), found)
+    things = [colliders.describe(thing) for thing in colliders.find(obj, scene)]
+    return scene_json.describe(obj.name, values(obj), world(scene), found, things)
 
 
 def record(obj: bpy.types.Object, description: dict[str, Any]) -> dict[str, Any]:

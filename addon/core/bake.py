@@ -12,13 +12,14 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple, Protocol
 
-from . import checkpoint_file, points, report, strain_file
+from . import checkpoint_file, points, quantity, report, vertex_file
 from .cache_paths import CacheFiles
 from .pc2 import Writer
 from .points import Affine, Points
+from .quantity import Numbers
 from .refusal import Refusal, cannot_write
 
 CHECKPOINT_SECONDS = 5.0
@@ -31,19 +32,31 @@ class Simulation(Protocol):
     frame: int
 
     def set_pin_targets(self, cloth: int, targets: Points) -> None: ...
+    def set_collider_targets(self, collider: int, targets: Points) -> None: ...
     def advance(self) -> dict[str, Any]: ...
     def certificate(self) -> dict[str, Any]: ...
     def read_positions(self, cloth: int, out: Points) -> None: ...
     def read_strain(self, cloth: int, out: Points) -> None: ...
+    def read_contacts(self, cloth: int, out: Points) -> None: ...
+    def read_intersections(self, cloth: int, out: Points) -> None: ...
     def checkpoint(self) -> bytes: ...
     def restore(self, checkpoint: bytes) -> None: ...
 
 
 class Pose(NamedTuple):
-    """What the scene says of a frame: pin targets (m, world space; None without pins) and world to object space."""
+    """What the scene says of a frame: where pins and colliders go (m, world space) and world to object space."""
 
     targets: Points | None
+    """For all vertices; None without pins."""
     to_object: Affine
+    colliders: Sequence[Points] = ()
+
+    def aim(self, simulation: Simulation) -> None:
+        """Tell a simulation where pins and colliders go in the next frame."""
+        if self.targets is not None:
+            simulation.set_pin_targets(0, self.targets)
+        for number, targets in enumerate(self.colliders):
+            simulation.set_collider_targets(number, targets)
 
 
 class Plan(NamedTuple):
@@ -54,7 +67,8 @@ class Plan(NamedTuple):
     end: int
     vertex_count: int
     digest: str
-    keeps_strain: bool = False
+    keeps: tuple[str, ...] = ()
+    """Keys of the quantities that are kept beside the positions."""
 
 
 class Step:
@@ -103,7 +117,7 @@ class Store:
         self.plan = plan
         self.rows = rows
         self._writer: Writer | None = None
-        self._strain: strain_file.Writer | None = None
+        self._numbers: dict[str, vertex_file.Writer] = {}
         self._saved_at = time.monotonic()
         self.last_frame: int | None = None
 
@@ -123,8 +137,9 @@ class Store:
         except OSError as error:
             raise cannot_write(self.files.pc2, error) from error
         self._writer = Writer.create(self.files.pc2, self.plan.vertex_count, self.plan.first)
-        if self.plan.keeps_strain:
-            self._strain = strain_file.Writer.create(self.files.strain, self.plan.vertex_count)
+        for key in self.plan.keeps:
+            path = getattr(self.files, key)
+            self._numbers[key] = vertex_file.Writer.create(path, self.plan.vertex_count)
 
     def resume(self, simulation: Simulation) -> bool:
         """Take up the checkpoint; False if there is none.
@@ -144,26 +159,29 @@ class Store:
         self._writer = Writer.reopen(
             self.files.pc2, self.plan.vertex_count, checkpoint.sample_count
         )
-        self._resume_strain(checkpoint.sample_count)
+        self._resume_numbers(checkpoint.sample_count)
         self.rows.keep_first(checkpoint.sample_count, report.read(self.files.report))
         self.last_frame = checkpoint.frame
         return True
 
-    def _resume_strain(self, sample_count: int) -> None:
-        """Strain that was not kept from the start cannot be made up for: what is there goes."""
-        if self.plan.keeps_strain:
-            path, count = self.files.strain, self.plan.vertex_count
-            self._strain = strain_file.Writer.reopen(path, count, sample_count)
-        if self._strain is None and os.path.isfile(self.files.strain):
-            os.remove(self.files.strain)
+    def _resume_numbers(self, sample_count: int) -> None:
+        """Numbers that were not kept from the start cannot be made up for: what is there goes."""
+        for key in (one.key for one in quantity.ALL):
+            path, writer = getattr(self.files, key), None
+            if key in self.plan.keeps:
+                writer = vertex_file.Writer.reopen(path, self.plan.vertex_count, sample_count)
+            if writer is not None:
+                self._numbers[key] = writer
+            elif os.path.isfile(path):
+                os.remove(path)
 
     def write(
-        self, frame: int, positions: Points, strain: Points, row: dict[str, Any], step: Step
+        self, frame: int, positions: Points, numbers: Numbers, row: dict[str, Any], step: Step
     ) -> None:
-        """Add a frame: positions (m), object space, float32, its strain and its certificate."""
+        """Add a frame: positions (m), object space, float32, numbers at its vertices and its certificate."""
         if frame >= self.plan.first:
-            if self._strain:
-                self._strain.append(strain)
+            for key, writer in self._numbers.items():
+                writer.append(numbers[key])
             self._writer.append(positions)
             self.rows.add(row, step.seconds)
         self.last_frame = frame
@@ -192,7 +210,7 @@ class Store:
 
     def close(self) -> None:
         """Close the files."""
-        for writer in (self._writer, self._strain):
+        for writer in (self._writer, *self._numbers.values()):
             if writer:
                 writer.close()
 
@@ -231,24 +249,24 @@ def bake(
     """
     plan = store.plan
     world = points.empty("d", 3 * plan.vertex_count)
-    strain = points.empty("f", plan.vertex_count if plan.keeps_strain else 0)
+    numbers = quantity.empty(plan.keeps, plan.vertex_count)
     pending: tuple[Step, Pose] | None = None
     usable = True
 
     def commit(step: Step, pose: Pose) -> None:
         certificate = step.result()
         positions = points.transform(world, pose.to_object, "f")
-        store.write(step.frame, positions, strain, certificate, step)
+        store.write(step.frame, positions, numbers, certificate, step)
 
     try:
         if not (resume and store.resume(simulation)):
             store.begin()
-            begin = Step(plan.start, lambda: _rest(simulation, world, strain))
+            begin = Step(plan.start, lambda: _rest(simulation, world, numbers))
             begin.run()
             commit(begin, pose_at(plan.start))
         for frame in range(simulation.frame + 1, plan.end + 1):
             pose = pose_at(frame)
-            step = Step(frame, lambda pose=pose: _advance(simulation, pose, world, strain))
+            step = Step(frame, lambda pose=pose: _advance(simulation, pose, world, numbers))
             pending = (step, pose)
             yield step
             pending = None
@@ -266,20 +284,18 @@ def bake(
             store.close()
 
 
-def _rest(simulation: Simulation, world: Points, strain: Points) -> dict[str, Any]:
-    _read(simulation, world, strain)
+def _rest(simulation: Simulation, world: Points, numbers: Numbers) -> dict[str, Any]:
+    _read(simulation, world, numbers)
     return simulation.certificate()
 
 
-def _advance(simulation: Simulation, pose: Pose, world: Points, strain: Points) -> dict[str, Any]:
-    if pose.targets is not None:
-        simulation.set_pin_targets(0, pose.targets)
+def _advance(simulation: Simulation, pose: Pose, world: Points, numbers: Numbers) -> dict[str, Any]:
+    pose.aim(simulation)
     certificate = simulation.advance()
-    _read(simulation, world, strain)
+    _read(simulation, world, numbers)
     return certificate
 
 
-def _read(simulation: Simulation, world: Points, strain: Points) -> None:
+def _read(simulation: Simulation, world: Points, numbers: Numbers) -> None:
     simulation.read_positions(0, world)
-    if len(strain):
-        simulation.read_strain(0, strain)
+    quantity.read(simulation, numbers)

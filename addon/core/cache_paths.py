@@ -16,7 +16,9 @@ class CacheFiles(NamedTuple):
     report: str
     checkpoint: str
     strain: str
-    """There only if the bake keeps the strain."""
+    """There only if the bake keeps the strain; so the next two."""
+    contact: str
+    intersection: str
 
     @property
     def previous(self) -> CacheFiles:
@@ -36,7 +38,8 @@ def _with_middle(path: str, word: str) -> str:
 def files_of(pc2: str) -> CacheFiles:
     """The files that belong to a PC2 file."""
     stem = os.path.splitext(pc2)[0]
-    return CacheFiles(pc2, f"{stem}.json", f"{stem}.checkpoint", f"{stem}.strain")
+    endings = ("json", "checkpoint", "strain", "contact", "intersection")
+    return CacheFiles(pc2, *(f"{stem}.{ending}" for ending in endings))
 
 
 def blend_stem(blend_path: str) -> str:

@@ -17,7 +17,18 @@ _WORDS = {
     "mass_per_vertex": "mass per vertex",
     "name": "",
     "self": "self collision",
+    "enabled": "collisions",
+    "thickness": "collision thickness",
+    "friction": "collision friction",
 }
+
+_VERTICES = {
+    "pins.vertices": "pinned vertices",
+    "vertices": "vertices in the wind",
+    "excluded_from_self": "vertices left out of self collision",
+    "excluded_from_colliders": "vertices left out of collision with objects",
+}
+"""Lists of vertices by the end of their key."""
 
 
 def digest(*parts: Points | bytes) -> str:
@@ -33,7 +44,9 @@ def digest(*parts: Points | bytes) -> str:
 def record(scene: Mapping[str, Any], vertices: int, topology: str) -> dict[str, Any]:
     """What a bake remembers of its cloth: settings one by one, long lists as a digest."""
     settings: dict[str, Any] = {}
-    _flatten(scene, "", settings)
+    _flatten({key: scene[key] for key in scene if key != "collider"}, "", settings)
+    for thing in scene.get("collider", []):
+        settings[f'collider "{thing["name"]}"'] = [thing["thickness"], thing["friction"]]
     settings.pop("cloth.name", None)
     frames = settings.pop("scene.frames", None)
     if frames:  # a bake may go on beyond its end: the end is no part of what it was made from
@@ -62,14 +75,21 @@ def differences(baked: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
 
 def _is_left_out(key: str, settings: Mapping[str, Any]) -> bool:
     """A list of vertices takes long to gather: the panel leaves it out, the check does not."""
-    return key.endswith("vertices") and not any(name.endswith("vertices") for name in settings)
+    return bool(_list_words(key)) and not any(_list_words(name) for name in settings)
 
 
 def _words(key: str) -> str:
+    if key.startswith("collider "):
+        return key
+    if _list_words(key):
+        return _list_words(key)
     parts = [part for part in key.split(".") if not part.isdigit()]
-    if parts[-1] == "vertices":
-        return "pinned vertices" if "pins" in parts else "vertices in the wind"
     return _WORDS.get(parts[-1]) or parts[-1].replace("_", " ")
+
+
+def _list_words(key: str) -> str:
+    """What a list of vertices is called; empty for other keys."""
+    return next((words for end, words in _VERTICES.items() if key.endswith(end)), "")
 
 
 def _flatten(value: Any, path: str, out: dict[str, Any]) -> None:
@@ -79,7 +99,7 @@ def _flatten(value: Any, path: str, out: dict[str, Any]) -> None:
     elif isinstance(value, list) and value and isinstance(value[0], dict):
         for inner in value:
             _flatten(inner, path, out)
-    elif isinstance(value, list) and path.endswith("vertices"):
+    elif isinstance(value, list) and _list_words(path):
         out[path] = digest(json.dumps(value).encode())
     else:
         out[path] = value

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import Enum
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from .points import Points
+from .quantity import Numbers
 
 
 class Action(Enum):
@@ -29,14 +31,13 @@ class Frame(NamedTuple):
     positions: Points
     """(m), object space, float32, flat."""
     certificate: Mapping[str, Any]
-    strain: Points | None = None
-    """Largest strain of the edges at each vertex, float32; None where it was not asked for."""
+    numbers: Numbers = MappingProxyType({})
+    """Quantities at the vertices, as far as they were asked for."""
 
     @property
     def size_bytes(self) -> int:
         """Memory of its arrays."""
-        strain_bytes = 0 if self.strain is None else memoryview(self.strain).nbytes
-        return memoryview(self.positions).nbytes + strain_bytes
+        return sum(memoryview(part).nbytes for part in (self.positions, *self.numbers.values()))
 
 
 class LiveFrames:

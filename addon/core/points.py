@@ -22,7 +22,8 @@ IDENTITY: Affine = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
 @cache
-def _numpy() -> ModuleType | None:
+def numpy_module() -> ModuleType | None:
+    """numpy, if this Blender has it."""
     try:
         import numpy
     except ImportError:
@@ -32,7 +33,7 @@ def _numpy() -> ModuleType | None:
 
 def empty(kind: str, length: int) -> Points:
     """A buffer of zeros of length items; kind is "f" (float32), "d" (float64) or "i" (int32)."""
-    numpy = _numpy()
+    numpy = numpy_module()
     if numpy is None:
         return array(kind, bytes(array(kind).itemsize * length))
     return numpy.zeros(length, dtype=kind)
@@ -75,7 +76,7 @@ def product(one: Affine, other: Affine) -> Affine:
 
 def transform(points: Points, matrix: Affine, kind: str) -> Points:
     """The points moved by the matrix, as a new buffer of the kind ("f" or "d")."""
-    numpy = _numpy()
+    numpy = numpy_module()
     if numpy is None:
         return _transform_slowly(points, matrix, kind)
     flat = numpy.asarray(points)

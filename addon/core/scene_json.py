@@ -26,10 +26,12 @@ class World(NamedTuple):
 
 
 class Groups(NamedTuple):
-    """Vertices picked by vertex groups; wind None blows everywhere."""
+    """Vertices picked by vertex groups; wind None blows everywhere, and excluded ones do not collide."""
 
     pins: Sequence[int]
     wind: Sequence[int] | None
+    excluded_from_self: Sequence[int] = ()
+    excluded_from_colliders: Sequence[int] = ()
 
 
 class CollisionObject(NamedTuple):
@@ -67,7 +69,7 @@ def describe(
             "fps": world.fps,
             "gravity": [decimal(value) for value in world.gravity],
         },
-        "cloth": [_cloth(name, values, groups.pins)],
+        "cloth": [_cloth(name, values, groups, bool(colliders))],
         "solver": _solver(name, values),
     }
     force = _wind(values, groups.wind)
@@ -83,24 +85,35 @@ def encode(scene: Mapping[str, Any]) -> str:
     return json.dumps(scene, allow_nan=False)
 
 
-def _cloth(name: str, values: Values, pins: Sequence[int]) -> dict[str, Any]:
+def _cloth(name: str, values: Values, groups: Groups, meets: bool) -> dict[str, Any]:
     cloth: dict[str, Any] = {"name": name, "model": "springs", "springs": _springs(values)}
     if values["mass_mode"] == "density":
         cloth["density"] = decimal(values["density"])
     else:
         cloth["mass_per_vertex"] = decimal(values["mass_per_vertex"])
-    if pins:
-        cloth["pins"] = {"vertices": list(pins)}
-    cloth["collision"] = collision(values)
+    if groups.pins:
+        cloth["pins"] = {"vertices": list(groups.pins)}
+    cloth["collision"] = collision(values, groups, meets)
     return cloth
 
 
-def collision(values: Values) -> dict[str, Any]:
-    """How a cloth collides; not at all where its settings do not tell."""
-    if "self_collision" not in values:
+def collision(values: Values, groups: Groups, meets: bool) -> dict[str, Any]:
+    """How a cloth collides; not at all where there is nothing that it could meet."""
+    with_self = bool(values.get("self_collision", False))
+    if not with_self and not meets:
         return {"enabled": False}
-    numbers = {key: decimal(values[key]) for key in ("thickness", "friction")}
-    return {"self": bool(values["self_collision"]), **numbers}
+    out = {"self": with_self, **{key: decimal(values[key]) for key in ("thickness", "friction")}}
+    if with_self and groups.excluded_from_self:
+        out["excluded_from_self"] = list(groups.excluded_from_self)
+    if meets and groups.excluded_from_colliders:
+        out["excluded_from_colliders"] = list(groups.excluded_from_colliders)
+    return out
+
+
+def without_contact(scene: Mapping[str, Any]) -> dict[str, Any]:
+    """The same scene with nothing to touch: for what depends on springs alone."""
+    cloths = [{**cloth, "collision": {"enabled": False}} for cloth in scene["cloth"]]
+    return {**{key: scene[key] for key in scene if key != "collider"}, "cloth": cloths}
 
 
 def collider(thing: CollisionObject) -> dict[str, Any]:

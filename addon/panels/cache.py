@@ -22,7 +22,8 @@ class BOUCLE_PT_cache(PhysicsPanel, Panel):
         column.prop(settings, "frame_start")
         column.prop(settings, "frame_end")
         column.prop(settings, "use_live")
-        column.prop(settings, "use_strain")
+        for name in ("use_strain", "use_contact", "use_intersection"):
+            column.prop(settings, name)
         layout = self.layout
         layout.operator(Operators.BAKE).resume = False
         row = layout.row(align=True)

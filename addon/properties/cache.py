@@ -2,7 +2,7 @@
 
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
-from .changes import FIXED, OVERRIDABLE, changed, strain_switched
+from .changes import FIXED, OVERRIDABLE, attributes_switched, changed
 
 _HIDDEN = {"HIDDEN"}
 
@@ -74,7 +74,19 @@ class CacheProperties:
         name="Strain Attribute",
         description="Tell the largest strain of the edges at each vertex in the attribute boucle_strain (L/L0 - 1); "
         "bakes keep it beside the cache",
-        default=False, options=FIXED, override=OVERRIDABLE, update=strain_switched,
+        default=False, options=FIXED, override=OVERRIDABLE, update=attributes_switched,
+    )  # fmt: skip
+    use_contact: BoolProperty(
+        name="Contact Attribute",
+        description="Tell the force with which contacts press on each vertex in the attribute boucle_contact (N); bakes "
+        "keep it beside the cache",
+        default=False, options=FIXED, override=OVERRIDABLE, update=attributes_switched,
+    )  # fmt: skip
+    use_intersection: BoolProperty(
+        name="Intersection Attribute",
+        description="Tell in how many intersections each vertex takes part in the attribute boucle_intersection; bakes "
+        "keep it beside the cache",
+        default=False, options=FIXED, override=OVERRIDABLE, update=attributes_switched,
     )  # fmt: skip
     certificate: StringProperty(
         name="Certificate",

@@ -16,12 +16,19 @@ def changed(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> N
     live.drop(settings.id_data)
 
 
-def strain_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    """Show the strain that is known of the present frame, or no longer."""
+def attributes_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Show the numbers at the vertices that are known of the present frame, or no longer."""
     from ..bridge import live, registry
 
     if registry.is_cloth(settings.id_data) and settings.id_data.library is None:
-        live.show_strain(settings.id_data, context.scene)
+        live.show_attributes(settings.id_data, context.scene)
+
+
+def thickness_switched(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Begin to draw the thickness in the viewports, or end it."""
+    from ..bridge import thickness_view
+
+    thickness_view.follow()
 
 
 def switched(settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:

@@ -7,6 +7,7 @@ from bpy.types import PropertyGroup
 from .._identifiers import POINTER
 from .cache import CacheProperties
 from .changes import FIXED, OVERRIDABLE, switched
+from .collisions import CollisionProperties
 from .forces import ForceProperties
 from .shape import ShapeProperties
 from .solver import SolverProperties
@@ -16,6 +17,7 @@ from .springs import SpringProperties
 class BOUCLE_PG_cloth(
     SpringProperties,
     ShapeProperties,
+    CollisionProperties,
     ForceProperties,
     SolverProperties,
     CacheProperties,

@@ -130,6 +130,12 @@ class Simulation:
     def read_strain(self, cloth: int, out: Buffer) -> None:
         """Fill out, float32 (n,), with the largest strain of the edges at each vertex."""
 
+    def read_contacts(self, cloth: int, out: Buffer) -> None:
+        """Fill out, float32 (n,), with the force (N) with which contacts press each vertex."""
+
+    def read_intersections(self, cloth: int, out: Buffer) -> None:
+        """Fill out, float32 (n,), with the number of edges and triangles at each vertex that pass through others."""
+
     def overstretched_edges(self, cloth: int) -> list[tuple[int, int, float]]:
         """List the mesh edges that are longer than the deformation rate allows: both vertices and the strain, worst first.
 

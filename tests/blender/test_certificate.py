@@ -54,7 +54,7 @@ def test_the_certificate_of_the_present_frame_is_told_and_never_a_stale_one(blen
     assert before == "" and len(lines) == 5
     pattern = (
         r"Frame (\d+): stretch ([\d.]+) % \(99 % of edges below ([\d.]+) %\), (?:(\d+) iterations, )?"
-        r"(\d+) substeps, energy -?[\d.e-]+ J, hash ([0-9a-f]{8})…"
+        r"(\d+) substeps, no intersections, energy -?[\d.e-]+ J, hash ([0-9a-f]{8})…"
     )
     for line, row in zip(lines, out["rows"], strict=True):
         found = re.fullmatch(pattern, line)

@@ -6,6 +6,8 @@ DESIGN_NAMES = {
     "enabled", "stretch", "shear", "bend", "damping", "damping_law", "deformation_rate", "limiter",
     "density", "mass_per_vertex", "mass_mode", "pin_group", "integrator", "substeps", "frame_start",
     "frame_end", "quality", "tolerance", "linear_solver", "stiffness_from", "use_strain",
+    "self_collision", "thickness", "friction", "object_collision", "collision_collection",
+    "collision_group", "self_collision_group", "show_thickness", "use_contact", "use_intersection",
 }  # fmt: skip
 
 
@@ -106,6 +108,8 @@ def draw_everything():
                 column = kind.column
 
             kind.draw(Panel(), bpy.context)
+            if "draw_header" in vars(kind):
+                kind.draw_header(Panel(), bpy.context)
 
     draw_panels()
     bpy.context.scene.frame_set(1)

@@ -5,7 +5,7 @@ from array import array
 
 import boucle_core
 import pytest
-from boucle_addon.core import bake, pc2, points, report, scene_json, strain_file
+from boucle_addon.core import bake, pc2, points, report, scene_json, vertex_file
 from boucle_addon.core.bake import Plan, Pose, Store
 from boucle_addon.core.cache_paths import files_of
 from boucle_addon.core.refusal import CacheRefusal, Refusal
@@ -38,9 +38,9 @@ def solver(integrator="symplectic_euler", **springs):
     return boucle_core.Simulation(scene_json.encode(scene), [grid()], 1)
 
 
-def store(folder, digest="d", first=1, keeps_previous=True, keeps_strain=False):
+def store(folder, digest="d", first=1, keeps_previous=True, keeps=()):
     rows = report.Report("0.1.0", "", 1, {"name": "A"})
-    plan = Plan(1, first, END, SIDE**2, digest, keeps_strain)
+    plan = Plan(1, first, END, SIDE**2, digest, keeps)
     return Store(files_of(str(folder / "a.pc2")), plan, rows, keeps_previous)
 
 
@@ -136,26 +136,83 @@ def test_strain_is_kept_beside_the_cache_and_goes_on_with_it(tmp_path):
     count = SIDE**2
     whole, part = tmp_path / "whole", tmp_path / "part"
     simulation, expected = solver(), array("f", bytes(4 * count))
-    pull(simulation, store(whole, keeps_strain=True))
+    pull(simulation, store(whole, keeps=("strain",)))
     simulation.read_strain(0, expected)
     path = str(whole / "a.strain")
-    assert strain_file.row_count(path, count) == END
-    assert strain_file.read(path, END - 1, count) == expected
-    assert max(abs(value) for value in strain_file.read(path, 0, count)) < 1e-5
-    assert strain_file.read(path, END, count) is None
-    assert strain_file.read(path, 0, count + 1) is None
-    pull(solver(), store(part, keeps_strain=True), steps=4)
-    assert strain_file.row_count(str(part / "a.strain"), count) == 5
-    pull(solver(), store(part, keeps_strain=True), resume=True)
+    assert vertex_file.row_count(path, count) == END
+    assert vertex_file.read(path, END - 1, count) == expected
+    assert max(abs(value) for value in vertex_file.read(path, 0, count)) < 1e-5
+    assert vertex_file.read(path, END, count) is None
+    assert vertex_file.read(path, 0, count + 1) is None
+    pull(solver(), store(part, keeps=("strain",)), steps=4)
+    assert vertex_file.row_count(str(part / "a.strain"), count) == 5
+    pull(solver(), store(part, keeps=("strain",)), resume=True)
     assert (part / "a.strain").read_bytes() == (whole / "a.strain").read_bytes()
 
 
 def test_a_resumed_bake_keeps_no_strain_that_it_did_not_have_from_the_start(tmp_path):
-    for before, after in ((True, False), (False, True)):
-        pull(solver(), store(tmp_path, keeps_strain=before), steps=4)
-        pull(solver(), store(tmp_path, keeps_strain=after), resume=True)
+    for before, after in ((("strain",), ()), ((), ("strain",))):
+        pull(solver(), store(tmp_path, keeps=before), steps=4)
+        pull(solver(), store(tmp_path, keeps=after), resume=True)
         assert pc2.read_header(str(tmp_path / "a.pc2")).sample_count == END
         assert not (tmp_path / "a.strain").exists()
+
+
+class Touching:
+    """A simulation that tells of contacts: the frame and the vertex are in the numbers."""
+
+    def __init__(self):
+        self._real = solver()
+
+    def __getattr__(self, name):
+        return getattr(self._real, name)
+
+    def read_contacts(self, cloth, out):
+        assert cloth == 0
+        out[:] = array("f", [self.frame + 0.5 * vertex for vertex in range(SIDE**2)])
+
+    def read_intersections(self, cloth, out):
+        assert cloth == 0
+        out[:] = array("f", [float(vertex % 2) for vertex in range(SIDE**2)])
+
+
+def test_contacts_and_intersections_are_kept_each_in_a_file_of_its_own(tmp_path):
+    count = SIDE**2
+    pull(Touching(), store(tmp_path, keeps=("contact", "intersection")), steps=4)
+    pull(Touching(), store(tmp_path, keeps=("contact", "intersection")), resume=True)
+    contact, crossed = str(tmp_path / "a.contact"), str(tmp_path / "a.intersection")
+    assert vertex_file.row_count(contact, count) == vertex_file.row_count(crossed, count) == END
+    assert vertex_file.read(contact, 6, count)[:3].tolist() == [7.0, 7.5, 8.0]
+    assert vertex_file.read(crossed, 6, count)[:3].tolist() == [0.0, 1.0, 0.0]
+    assert not (tmp_path / "a.strain").exists()
+    (tmp_path / "a.strain").write_bytes((tmp_path / "a.contact").read_bytes())
+    assert vertex_file.row_count(str(tmp_path / "a.strain"), count) == 0, "of another quantity"
+
+
+class Aimed(Touching):
+    """A simulation that notes where its colliders go."""
+
+    def __init__(self):
+        super().__init__()
+        self.aims = []
+
+    def set_collider_targets(self, collider, targets):
+        self.aims.append((self.frame + 1, collider, targets))
+
+
+def test_pins_and_colliders_are_told_where_they_go_before_each_frame(tmp_path):
+    simulation = Aimed()
+
+    def among(frame):
+        return pose(frame)._replace(colliders=[f"ball at {frame}", f"box at {frame}"])
+
+    for step in bake.bake(simulation, store(tmp_path), among, False, boucle_core.InternalError):
+        step.run()
+    assert simulation.aims == [
+        (frame, number, f"{name} at {frame}")
+        for frame in range(2, END + 1)
+        for number, name in enumerate(("ball", "box"))
+    ]
 
 
 @pytest.mark.parametrize("integrator", ["bdf2", "implicit_euler"])

@@ -40,6 +40,20 @@ def test_every_change_has_its_word():
     assert words(changed(("force",), [{"kind": "wind"}])) == ["kind"]
 
 
+def test_colliders_and_what_they_do_not_touch_are_named():
+    ball = {"name": "Ball.001", "thickness": 0.02, "friction": 0.05}
+    box = {**ball, "name": "Box"}
+    with_both = drift.record({**SCENE, "collider": [ball, box]}, 9, "t")
+    assert words(with_both) == ['collider "Ball.001"', 'collider "Box"']
+    rough = drift.record({**SCENE, "collider": [{**ball, "friction": 0.5}, box]}, 9, "t")
+    assert drift.differences(with_both, rough) == ['collider "Ball.001"']
+    assert drift.differences(with_both, with_both) == []
+    left_out = changed(("cloth", 0, "collision"), {"self": True, "excluded_from_self": [1]})
+    assert words(left_out) == ["vertices left out of self collision", "self collision"]
+    left_out = changed(("cloth", 0, "collision"), {"excluded_from_colliders": [1]})
+    assert words(left_out) == ["vertices left out of collision with objects"]
+
+
 def test_another_name_is_no_change():
     assert words(changed(("cloth", 0, "name"), "B")) == []
 

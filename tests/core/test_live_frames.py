@@ -10,8 +10,8 @@ def frames(count, limit=10_000):
     return kept
 
 
-def frame(value, strain=None):
-    return Frame(array("f", [float(value)] * 3), {"frame": 5 + value}, strain)
+def frame(value, **numbers):
+    return Frame(array("f", [float(value)] * 3), {"frame": 5 + value}, numbers)
 
 
 def test_only_the_frame_after_the_last_is_simulated():
@@ -40,12 +40,12 @@ def test_full_memory_stops_the_simulation():
     assert kept.action(7, 0.0, 20) is Action.SHOW
 
 
-def test_strain_counts_in_the_memory():
+def test_numbers_at_the_vertices_count_in_the_memory():
     kept = frames(3, limit=44)
-    kept.add(frame(3, array("f", [0.5])))
+    kept.add(frame(3, strain=array("f", [0.5])))
     assert kept.size_bytes == 52
     assert kept.action(9, 0.0, 20) is Action.FULL
-    assert kept.nearest(8).strain[0] == 0.5 and kept.nearest(7).strain is None
+    assert kept.nearest(8).numbers["strain"][0] == 0.5 and not kept.nearest(7).numbers
 
 
 def test_a_certificate_is_told_only_of_frames_that_are_there():

@@ -9,7 +9,7 @@ TURNED = (0.0, -2.0, 0.0, 5.0, 1.0, 0.0, 0.5, -7.0, 0.0, 0.0, 3.0, 0.25)
 @pytest.fixture(params=["numpy", "no numpy"])
 def either_way(request, monkeypatch):
     if request.param == "no numpy":
-        monkeypatch.setattr(points, "_numpy", lambda: None)
+        monkeypatch.setattr(points, "numpy_module", lambda: None)
 
 
 @pytest.mark.usefixtures("either_way")

@@ -22,6 +22,8 @@ GROUPS = Groups([2, 3], None)
 
 
 COLLIDING = {"self_collision": True, "thickness": 0.0049999998882, "friction": 0.30000001192}
+BODY = CollisionObject("Body", 0.019999999552965164, 5.0)
+BELOW = (array("d", [0, 0, -1, 1, 0, -1, 0, 1, -1]), array("i", [0]), array("i", [0, 1, 2]))
 
 
 def described(world=WORLD, groups=GROUPS, colliders=(), **changes):
@@ -88,17 +90,36 @@ def test_a_cloth_collides_as_its_settings_say_and_without_them_not_at_all():
     assert described()["cloth"][0]["collision"] == {"enabled": False}
     collision = described(**COLLIDING)["cloth"][0]["collision"]
     assert collision == {"self": True, "thickness": 0.005, "friction": 0.3}
-    collision = described(**{**COLLIDING, "self_collision": False})["cloth"][0]["collision"]
-    assert collision["self"] is False
+    loose = {**COLLIDING, "self_collision": False}
+    assert described(**loose)["cloth"][0]["collision"] == {"enabled": False}
+    collision = described(colliders=[BODY], **loose)["cloth"][0]["collision"]
+    assert collision == {"self": False, "thickness": 0.005, "friction": 0.3}
+
+
+def test_excluded_vertices_are_named_only_where_they_could_touch():
+    groups = Groups([], None, [0, 1], [2])
+    collision = described(groups=groups, **COLLIDING)["cloth"][0]["collision"]
+    assert collision["excluded_from_self"] == [0, 1] and "excluded_from_colliders" not in collision
+    loose = {**COLLIDING, "self_collision": False}
+    scene = described(groups=groups, colliders=[BODY], **loose)
+    collision = scene["cloth"][0]["collision"]
+    assert collision["excluded_from_colliders"] == [2] and "excluded_from_self" not in collision
+    simulation(scene, [BELOW]).advance()
+
+
+def test_what_depends_on_springs_alone_may_be_asked_without_contact():
+    scene = described(colliders=[BODY], **COLLIDING)
+    bare = scene_json.without_contact(scene)
+    assert "collider" not in bare and bare["cloth"][0]["collision"] == {"enabled": False}
+    assert bare["cloth"][0]["springs"] == scene["cloth"][0]["springs"] and "collider" in scene
+    assert simulation(bare).safe_time_step == simulation(scene, [BELOW]).safe_time_step
 
 
 def test_the_friction_of_a_collision_object_is_a_hundredth_of_blenders():
     assert "collider" not in described()
-    body = CollisionObject("Body", 0.019999999552965164, 5.0)
-    scene = described(colliders=[body], **COLLIDING)
+    scene = described(colliders=[BODY], **COLLIDING)
     assert scene["collider"] == [{"name": "Body", "thickness": 0.02, "friction": 0.05}]
-    below = array("d", [0, 0, -1, 1, 0, -1, 0, 1, -1])
-    solver = simulation(scene, [(below, array("i", [0]), array("i", [0, 1, 2]))])
+    solver = simulation(scene, [BELOW])
     assert solver.collider_names == ["Body"]
 
 

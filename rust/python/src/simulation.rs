@@ -199,6 +199,29 @@ impl Simulation {
         buffers::write_numbers(out, &strain, "float32")
     }
 
+    fn read_contacts(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        out: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let index = self.cloth(py, cloth)?.0;
+        let forces = self.with(py, |assembly| Ok(assembly.simulation.vertex_contacts(index)))?;
+        buffers::write_numbers(out, &forces, "float32")
+    }
+
+    fn read_intersections(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        out: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let index = self.cloth(py, cloth)?.0;
+        let counts =
+            self.with(py, |assembly| Ok(assembly.simulation.vertex_intersections(index)))?;
+        buffers::write_numbers(out, &counts, "float32")
+    }
+
     fn overstretched_edges(
         &mut self,
         py: Python<'_>,

@@ -93,7 +93,8 @@ impl Checkpoint {
         reader.0 = rest;
         let is_pinned = pins.iter().map(|&byte| byte != 0).collect();
         let colliders = reader.vectors()?;
-        let memory = if reader.0.is_empty() { None } else { Some(Self::read_memory(reader, count)?) };
+        let memory =
+            if reader.0.is_empty() { None } else { Some(Self::read_memory(reader, count)?) };
         reader.0.is_empty().then_some(Self {
             digest,
             frame,

@@ -86,10 +86,10 @@ impl Collider {
     /// [`Error::BadCollider`] or [`Error::OutOfDomain`] for the first thing that is not accepted.
     pub fn check(&self) -> Result<()> {
         let owner = format!("collider \"{}\"", self.name);
-        check_number(&owner, "thickness (m)", self.thickness, self.thickness >= 0.0)?;
-        check_number(&owner, "friction", self.friction, self.friction >= 0.0)?;
+        check_number(&owner, "thickness (m)", self.thickness, true)?;
+        check_number(&owner, "friction", self.friction, true)?;
         if let Shape::Sphere { radius } | Shape::Capsule { radius } = self.shape {
-            check_number(&owner, "radius (m)", radius, radius > 0.0)?;
+            check_number(&owner, "radius (m)", radius, false)?;
         }
         self.check_positions(&self.positions)
     }

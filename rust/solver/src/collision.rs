@@ -40,8 +40,8 @@ impl Collision {
     /// Refuses values outside their domains, for a cloth of a name and so many vertices among so many colliders.
     pub(crate) fn check(&self, cloth: &str, vertices: usize, colliders: usize) -> Result<()> {
         let owner = format!("cloth \"{cloth}\"");
-        check_number(&owner, "thickness (m)", self.thickness, self.thickness > 0.0)?;
-        check_number(&owner, "friction", self.friction, self.friction >= 0.0)?;
+        check_number(&owner, "thickness (m)", self.thickness, false)?;
+        check_number(&owner, "friction", self.friction, true)?;
         let refuse = |what: &str, number: u32, count: usize| {
             let reason = format!("{what} {number} is not there; accepted: below {count}");
             Err(Error::BadCloth { cloth: cloth.to_owned(), reason })
@@ -62,16 +62,13 @@ impl Collision {
 }
 
 /// Refuses a thickness or a coefficient of friction beyond its domain.
-pub(crate) fn check_number(
-    owner: &str,
-    what: &str,
-    value: f64,
-    is_large_enough: bool,
-) -> Result<()> {
+pub(crate) fn check_number(owner: &str, what: &str, value: f64, may_be_zero: bool) -> Result<()> {
     let (most, domain) = match what {
         "friction" => (ROUGHEST, "0 to 100"),
+        _ if may_be_zero => (THICKEST, "0 to 100"),
         _ => (THICKEST, "above 0, at most 100"),
     };
+    let is_large_enough = if may_be_zero { value >= 0.0 } else { value > 0.0 };
     if is_large_enough && value <= most {
         return Ok(());
     }

@@ -20,7 +20,9 @@ pub(crate) fn digest(
     hasher.update(format!("{settings:?} {winds:?} {colliders:?}").as_bytes());
     hasher.update(env!("CARGO_PKG_VERSION").as_bytes());
     for cloth in cloths {
-        hasher.update(format!("{:?} {:?} {:?}", cloth.material, cloth.pins, cloth.collision).as_bytes());
+        hasher.update(
+            format!("{:?} {:?} {:?}", cloth.material, cloth.pins, cloth.collision).as_bytes(),
+        );
         for spring in &cloth.springs {
             let [a, b] = spring.ends;
             for part in [a, b, spring.kind as u32] {

@@ -1,6 +1,8 @@
 //! A simulation as the outside holds it: cloths that move frame by frame.
 
+mod contact;
 mod plan;
+mod saving;
 mod velocity;
 
 use std::fmt;
@@ -10,7 +12,6 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::awake::with_others_awake;
 use crate::certificate::{Certificate, certify, length};
-use crate::checkpoint::Checkpoint;
 use crate::cloth::{Cloth, FARTHEST, placed};
 use crate::collider::Collider;
 use crate::contact::Contacts;
@@ -176,33 +177,6 @@ impl Simulation {
         });
     }
 
-    /// How many colliders there are.
-    #[must_use]
-    pub fn collider_count(&self) -> usize {
-        self.colliders.len()
-    }
-
-    /// A collider as it was given.
-    ///
-    /// # Panics
-    /// When there is no collider of this number; so does [`Self::set_collider_targets`].
-    #[must_use]
-    pub fn collider(&self, collider: usize) -> &Collider {
-        &self.colliders[collider]
-    }
-
-    /// Where the points of a collider are to be at the end of the next frame (m). They move there in straight lines, and
-    /// rest there until they are told anew.
-    ///
-    /// # Errors
-    /// [`Error::BadCollider`] when there are not as many as it has, or one is no place in space.
-    pub fn set_collider_targets(&mut self, collider: usize, targets: &[Vector]) -> Result<()> {
-        self.colliders[collider].check_positions(targets)?;
-        let before = self.colliders[..collider].iter().map(|collider| collider.positions.len());
-        self.contacts.aim(before.sum(), targets);
-        Ok(())
-    }
-
     /// Lets pins go, with the velocity they have.
     pub fn release_pins(&mut self, cloth: usize, vertices: &[u32]) {
         let base = self.bases[cloth];
@@ -296,7 +270,8 @@ impl Simulation {
         }
         self.pins.start(&mut self.state, duration);
         let Self { system, pins, contacts, limits, state, method, threads, .. } = self;
-        let stride = plan::stride(method, contacts.longest_way(&state.velocity, duration), substeps);
+        let stride =
+            plan::stride(method, contacts.longest_way(&state.velocity, duration), substeps);
         // No pass has work for more.
         let others = state.len() / CHUNK;
         threads.install(|| {
@@ -378,60 +353,6 @@ impl Simulation {
             law.stiffness_at(spring.stiffness, ratio)
         });
         stiffness.collect()
-    }
-
-    /// The whole state as bytes.
-    #[must_use]
-    pub fn checkpoint(&self) -> Vec<u8> {
-        let count = self.state.len();
-        let checkpoint = Checkpoint {
-            digest: self.digest,
-            frame: self.frame,
-            substeps: self.substeps_taken,
-            state: self.state.clone(),
-            memory: self.method.memory().cloned(),
-            colliders: self.contacts.collider_positions().to_vec(),
-            is_pinned: (0..count).map(|particle| self.system.is_pinned(particle)).collect(),
-        };
-        checkpoint.to_bytes()
-    }
-
-    /// Takes up the state of a checkpoint; what follows is bit-equal to never having stopped.
-    ///
-    /// # Errors
-    /// [`Error::BadCheckpoint`] when it is damaged or of other cloths or settings.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
-        let checkpoint = Checkpoint::from_bytes(bytes)?;
-        if checkpoint.digest != self.digest
-            || checkpoint.state.len() != self.state.len()
-            || checkpoint.colliders.len() != self.contacts.collider_positions().len()
-        {
-            return Err(Error::BadCheckpoint(
-                "is of another scene or other settings; accepted: the one that it was made from",
-            ));
-        }
-        if let (Some(memory), Some(restored)) = (self.method.memory_mut(), checkpoint.memory) {
-            *memory = restored;
-        }
-        self.contacts.place_colliders(&checkpoint.colliders);
-        self.state = checkpoint.state;
-        self.frame = checkpoint.frame;
-        self.substeps_taken = checkpoint.substeps;
-        self.iterations_taken = 0;
-        let pinned = checkpoint.is_pinned.iter().enumerate().filter(|&(_, &is_pinned)| is_pinned);
-        self.pins = Pins::new(pinned.map(|(particle, _)| particle as u32), &self.state);
-        self.follow_pins();
-        self.intersect();
-        Ok(())
-    }
-
-    /// Counts the intersections of the present state.
-    fn intersect(&mut self) {
-        let Self { contacts, state, threads, .. } = self;
-        if !contacts.is_empty() {
-            let count = threads.install(|| contacts.intersections(&state.position));
-            self.intersections = Some(count);
-        }
     }
 
     fn frame_duration(&self) -> f64 {

@@ -23,8 +23,8 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use crate::Vector;
-pub(crate) use pack::{Pack, WIDTH};
 pub use pack::Sweep;
+pub(crate) use pack::{Pack, WIDTH};
 
 /// Packs that one task fits, at the least.
 const PACKS: usize = 32;

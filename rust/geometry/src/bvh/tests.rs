@@ -76,8 +76,7 @@ fn pairs_with_a_marked_item_are_found_once() {
     let balls = Balls::new(500, 3, 0.3);
     let is_marked = |item: u32| item % 37 < 3;
     let bvh = balls.bvh();
-    let mut found =
-        bvh.pairs_of_marked(is_marked, |a, b, found| found.push([a.min(b), a.max(b)]));
+    let mut found = bvh.pairs_of_marked(is_marked, |a, b, found| found.push([a.min(b), a.max(b)]));
     found.sort_unstable();
     let mut expected = bvh.pairs(|a, b, found| {
         if is_marked(a) || is_marked(b) {
@@ -103,10 +102,13 @@ fn two_hierarchies_find_their_pairs() {
     let none = Balls::new(0, 0, 0.0).bvh();
     assert!(none.pairs_with(&many.bvh(), |a, b, found| found.push([a, b])).is_empty());
     assert!(many.bvh().pairs_with(&none, |a, b, found| found.push([a, b])).is_empty());
-    let marked =
-        many.bvh().pairs_of_marked_with(|item| item < 300, &few.bvh(), |a, b, found: &mut Vec<_>| {
+    let marked = many.bvh().pairs_of_marked_with(
+        |item| item < 300,
+        &few.bvh(),
+        |a, b, found: &mut Vec<_>| {
             found.push([a, b]);
-        });
+        },
+    );
     assert_eq!(marked.len(), expected.iter().filter(|pair| pair[0] < 300).count());
 }
 

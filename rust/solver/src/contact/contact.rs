@@ -104,7 +104,10 @@ impl Near {
     /// The contact of the features, if they come near enough.
     pub(super) fn contact(&self, candidate: &Candidate, bodies: &Bodies) -> Option<Contact> {
         let Self { closest, normal, distance, nearest, thickness, .. } = *self;
-        if nearest >= thickness || closest.offset.norm() < NOWHERE || !candidate.speaks_for(closest.feature) {
+        if nearest >= thickness
+            || closest.offset.norm() < NOWHERE
+            || !candidate.speaks_for(closest.feature)
+        {
             return None;
         }
         let points = candidate.points;
@@ -115,7 +118,7 @@ impl Near {
         } else {
             thickness.min(way_out(distance, thickness))
         };
-        let [one, other] = owners.map(|body| bodies.bodies[body as usize].friction);
+        let [one, other] = owners.map(|body| bodies.each[body as usize].friction);
         (nearest < reach).then_some(Contact {
             points,
             weights: closest.weights,

@@ -54,9 +54,7 @@ impl Contacts {
         } else {
             self.bodies.may_touch(&triangle.points, &edge.points)
         };
-        if may_touch
-            && edge_crosses_triangle(edge.points.map(place), triangle.points.map(place))
-        {
+        if may_touch && edge_crosses_triangle(edge.points.map(place), triangle.points.map(place)) {
             found.push(Crossing { edge: *edge, triangle: *triangle });
         }
     }
@@ -65,7 +63,8 @@ impl Contacts {
     fn too_near(&self) -> Vec<[u32; 4]> {
         let Self { bodies, paths, .. } = self;
         self.search(None, |candidate, found| {
-            let radius = bodies.body(candidate.points[0]).radius + bodies.body(candidate.points[3]).radius;
+            let radius =
+                bodies.body(candidate.points[0]).radius + bodies.body(candidate.points[3]).radius;
             if radius > 0.0 {
                 let closest = candidate.closest(|point| paths.start[point as usize]);
                 if closest.offset.norm() < radius && candidate.speaks_for(closest.feature) {

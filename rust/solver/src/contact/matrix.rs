@@ -31,6 +31,8 @@ struct Tangent {
     /// k - c and c.
     along: f32,
     all_around: f32,
+    /// Whether a point takes part that does not move by itself.
+    is_held: bool,
 }
 
 /// All contacts of a step.
@@ -46,13 +48,17 @@ pub(crate) struct ContactMatrix {
     chunks: Vec<u32>,
     /// What each contact feels: scratch of a product.
     forces: Mutex<Vec<[f32; 3]>>,
+    /// L⁻¹ of `L Lᵀ = I + C/inertia` for each particle that takes part, C the block that contacts add to it: xx, yx, yy, zx,
+    /// zy, zz.
+    roots: Vec<Entries<f32>>,
 }
 
 impl ContactMatrix {
     /// Takes over which particles the contacts join; `count` particles there are.
     pub(super) fn join(&mut self, contacts: &[Contact], inverse_masses: &[f64]) {
         let count = inverse_masses.len();
-        let moves = |point: u32| inverse_masses.get(point as usize).is_some_and(|&inverse| inverse > 0.0);
+        let moves =
+            |point: u32| inverse_masses.get(point as usize).is_some_and(|&inverse| inverse > 0.0);
         self.tangents.clear();
         self.tangents.extend(contacts.iter().map(|contact| {
             let mut tangent = Tangent {
@@ -61,9 +67,11 @@ impl ContactMatrix {
                 normal: contact.normal.map(|x| x as f32).into(),
                 along: 0.0,
                 all_around: 0.0,
+                is_held: false,
             };
             for i in 0..4 {
                 if !moves(tangent.points[i]) {
+                    tangent.is_held |= tangent.weights[i] != 0.0;
                     (tangent.points[i], tangent.weights[i]) = (0, 0.0);
                 }
             }
@@ -109,6 +117,14 @@ impl ContactMatrix {
                 *place += 1;
             }
         }
+    }
+
+    /// The particles that each contact joins, and whether it joins them to something held.
+    pub(crate) fn joints(&self) -> impl Iterator<Item = (impl Iterator<Item = u32>, bool)> {
+        self.tangents.iter().map(|tangent| {
+            let ends = tangent.points.into_iter().zip(tangent.weights);
+            (ends.filter(|end| end.1 != 0.0).map(|end| end.0), tangent.is_held)
+        })
     }
 
     /// The particles that take part, in order.
@@ -158,11 +174,9 @@ impl ContactMatrix {
     /// Adds forces along the contacts (N, vectors for each contact) to the particles, in f64.
     pub(super) fn add_forces(&self, forces: &[Vector], out: &mut Coordinates) {
         for (place, &particle) in self.particles.iter().enumerate() {
-            let sum = self
-                .incidences_of(place)
-                .fold(Vector::zeros(), |sum, (contact, weight)| {
-                    sum + f64::from(weight) * forces[contact as usize]
-                });
+            let sum = self.incidences_of(place).fold(Vector::zeros(), |sum, (contact, weight)| {
+                sum + f64::from(weight) * forces[contact as usize]
+            });
             for axis in 0..3 {
                 out.0[axis][particle as usize] += sum[axis];
             }
@@ -192,6 +206,69 @@ impl ContactMatrix {
         }
     }
 
+    /// Weighs what contacts add to each particle against its inertia (kg/s²).
+    pub(crate) fn weigh(&mut self, inertia: &[f32]) {
+        let mut roots = std::mem::take(&mut self.roots);
+        let places = (0..self.particles.len()).into_par_iter().with_min_len(CONTACTS);
+        let each = places.map(|place| {
+            let mut block = [1.0, 0.0, 1.0, 0.0, 0.0, 1.0];
+            let by_inertia = 1.0 / inertia[self.particles[place] as usize];
+            for (contact, weight) in self.incidences_of(place) {
+                let Tangent { normal: [x, y, z], along, all_around, .. } =
+                    self.tangents[contact as usize];
+                let square = weight * weight * by_inertia;
+                let products = [x * x, y * x, y * y, z * x, z * y, z * z];
+                for (entry, product) in block.iter_mut().zip(products) {
+                    *entry += square * along * product;
+                }
+                for entry in [0, 2, 5] {
+                    block[entry] += square * all_around;
+                }
+            }
+            inverse_root(block)
+        });
+        each.collect_into_vec(&mut roots);
+        self.roots = roots;
+    }
+
+    /// `p = L⁻¹ p` for the particles that take part; returns what they had.
+    pub(crate) fn lighten(&self, p: &mut Field) -> Vec<[f32; 3]> {
+        self.change(p, |[xx, yx, yy, zx, zy, zz], [x, y, z]| {
+            [xx * x, yx * x + yy * y, zx * x + zy * y + zz * z]
+        })
+    }
+
+    /// `p = L⁻ᵀ p` for the particles that take part.
+    pub(crate) fn lighten_transposed(&self, p: &mut Field) {
+        self.change(p, |[xx, yx, yy, zx, zy, zz], [x, y, z]| {
+            [xx * x + yx * y + zx * z, yy * y + zy * z, zz * z]
+        });
+    }
+
+    /// Gives the particles that take part these vectors.
+    pub(crate) fn put_back(&self, vectors: &[[f32; 3]], p: &mut Field) {
+        for (&particle, vector) in self.particles.iter().zip(vectors) {
+            for (axis, value) in p.0.iter_mut().zip(vector) {
+                axis[particle as usize] = *value;
+            }
+        }
+    }
+
+    fn change(
+        &self,
+        p: &mut Field,
+        by: impl Fn(&Entries<f32>, [f32; 3]) -> [f32; 3],
+    ) -> Vec<[f32; 3]> {
+        let change = |(&particle, root): (&u32, &Entries<f32>)| {
+            let before = p.0.each_ref().map(|axis| axis[particle as usize]);
+            for (axis, value) in p.0.iter_mut().zip(by(root, before)) {
+                axis[particle as usize] = value;
+            }
+            before
+        };
+        self.particles.iter().zip(&self.roots).map(change).collect()
+    }
+
     fn places(&self, chunk: usize) -> std::ops::Range<usize> {
         self.chunks[chunk] as usize..self.chunks[chunk + 1] as usize
     }
@@ -202,19 +279,36 @@ impl ContactMatrix {
     }
 }
 
+/// L⁻¹ of a block `L Lᵀ`.
+fn inverse_root([xx, yx, yy, zx, zy, zz]: Entries<f32>) -> Entries<f32> {
+    // The blocks are no less than the identity; rounding must not make them so.
+    let x = 1.0 / xx.max(1.0).sqrt();
+    let (lyx, lzx) = (yx * x, zx * x);
+    let y = 1.0 / (yy - lyx * lyx).max(1.0).sqrt();
+    let lzy = (zy - lzx * lyx) * y;
+    let z = 1.0 / (zz - lzx * lzx - lzy * lzy).max(1.0).sqrt();
+    let inverse_yx = -lyx * x * y;
+    let inverse_zx = -(lzx * x + lzy * inverse_yx) * z;
+    [x, inverse_yx, y, inverse_zx, -lzy * y * z, z]
+}
+
 impl Tangent {
     /// What the contact feels of moves p: `k n (n·u) + c (u - n (n·u))`, u the sum of moves by weight.
     #[inline]
     fn pull(&self, p: &Field, sign: f32) -> [f32; 3] {
         let mut u = [0.0_f32; 3];
         for (point, weight) in self.points.into_iter().zip(self.weights) {
-            for axis in 0..3 {
-                u[axis] += weight * p.0[axis][point as usize];
+            for (sum, axis) in u.iter_mut().zip(&p.0) {
+                *sum += weight * axis[point as usize];
             }
         }
         let [x, y, z] = self.normal;
         let along = sign * self.along * (x * u[0] + y * u[1] + z * u[2]);
         let all_around = sign * self.all_around;
-        [x * along + all_around * u[0], y * along + all_around * u[1], z * along + all_around * u[2]]
+        [
+            x * along + all_around * u[0],
+            y * along + all_around * u[1],
+            z * along + all_around * u[2],
+        ]
     }
 }

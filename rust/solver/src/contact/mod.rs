@@ -13,19 +13,19 @@ mod bodies;
 mod candidate;
 #[expect(clippy::module_inception, reason = "the module of contact holds the type of one contact")]
 mod contact;
+mod cut;
 mod features;
 mod friction;
 mod half_space;
 mod intersections;
+mod matrix;
 mod paths;
 mod recovery;
 mod response;
 mod search;
-mod matrix;
-mod cut;
-mod truncation;
 #[cfg(test)]
 mod tests;
+mod truncation;
 
 use boucle_geometry::Vector;
 use rayon::prelude::*;
@@ -38,10 +38,10 @@ use bodies::Bodies;
 use candidate::Candidate;
 use contact::{Contact, Near};
 use features::Trees;
+pub(crate) use matrix::ContactMatrix;
 use paths::Paths;
 use recovery::Tangle;
 pub(crate) use response::Response;
-pub(crate) use matrix::ContactMatrix;
 
 /// What a contact does at a guess.
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,7 +65,7 @@ pub(crate) struct Contacts {
     origins: Vec<Vector>,
     /// Where the colliders' points are (m) at the start and at the end of the frame.
     frame: [Vec<Vector>; 2],
-    contacts: Vec<Contact>,
+    near: Vec<Contact>,
     /// What has passed through.
     tangle: Tangle,
     /// Candidates that may meet on ways near those that were expected, and those ways (m).
@@ -91,7 +91,7 @@ impl Contacts {
             paths: Paths::at_rest(&bodies.rest),
             origins: bodies.rest.clone(),
             frame: [of_colliders.to_vec(), of_colliders.to_vec()],
-            contacts: Vec::new(),
+            near: Vec::new(),
             tangle: Tangle::default(),
             watched: Vec::new(),
             expected: vec![Vector::zeros(); bodies.rest.len()],
@@ -116,12 +116,35 @@ impl Contacts {
 
     /// How many contacts the last step had.
     pub(crate) fn count(&self) -> u32 {
-        self.contacts.len() as u32
+        self.near.len() as u32
     }
 
     /// Vertices whose way was cut short, once for each step, since this was last asked.
     pub(crate) fn take_clipped(&mut self) -> u32 {
         std::mem::take(&mut self.clipped)
+    }
+
+    /// The particles that contacts press, some of them more than once.
+    pub(crate) fn pressed(&self) -> impl Iterator<Item = u32> {
+        let pressed = self.pressures().filter(|&(_, force)| force > 0.0);
+        pressed.map(|(point, _)| point).filter(|&point| self.paths.is_free(point))
+    }
+
+    /// The force (N) that each contact presses each of its particles with.
+    pub(crate) fn pressures(&self) -> impl Iterator<Item = (u32, f64)> {
+        let points = self.near.iter().zip(&self.pressures).flat_map(|(contact, pressure)| {
+            let shares = contact.weights.map(|weight| weight.abs() * pressure.force);
+            contact.points.into_iter().zip(shares)
+        });
+        points.filter(|&(point, _)| self.bodies.is_particle(point))
+    }
+
+    /// The particles of each edge and triangle that pass through each other.
+    pub(crate) fn tangled(&self) -> impl Iterator<Item = u32> {
+        let crossings = self.tangle.crossings.iter();
+        let points = crossings
+            .flat_map(|crossing| crossing.edge.points.into_iter().chain(crossing.triangle.points));
+        points.filter(|&point| self.bodies.is_particle(point))
     }
 
     /// Where the points of all colliders are (m).
@@ -161,7 +184,11 @@ impl Contacts {
     pub(crate) fn start_step(&mut self, part: [u32; 2], count: u32, positions: &Coordinates) {
         let at = |part: u32, from: &Vector, to: &Vector| {
             // What arrives is exactly there.
-            if part == count { *to } else { from + f64::from(part) / f64::from(count) * (to - from) }
+            if part == count {
+                *to
+            } else {
+                from + f64::from(part) / f64::from(count) * (to - from)
+            }
         };
         let first = self.bodies.particle_count;
         let [from, to] = &self.frame;
@@ -211,20 +238,20 @@ impl Contacts {
             contacts.extend(Contact::with_plane(points, normal, &self.bodies, &self.paths));
         });
         contacts.par_iter_mut().for_each(|contact| contact.stiffen(inverse_masses, h));
-        self.contacts = contacts;
-        self.matrix.join(&self.contacts, inverse_masses);
+        self.near = contacts;
+        self.matrix.join(&self.near, inverse_masses);
         self.pressures.clear();
-        self.pressures.resize(self.contacts.len(), Pressure::default());
+        self.pressures.resize(self.near.len(), Pressure::default());
     }
 
     /// Adds the forces (N) of contacts at these positions (m) to the residual, and freezes their tangents, in a step of h
     /// seconds. Friction takes the pressure that the last solution found.
     pub(crate) fn push(&mut self, at: &Coordinates, residual: &mut Coordinates, h: f64) {
-        let Self { contacts, pressures, paths, origins, bodies, .. } = self;
+        let Self { near, pressures, paths, origins, bodies, .. } = self;
         let moved = |point: u32| {
             if bodies.is_particle(point) { at.get(point as usize) } else { paths.end(point) }
         };
-        let pushed: Vec<(Vector, [f64; 2])> = contacts
+        let pushed: Vec<(Vector, [f64; 2])> = near
             .par_iter()
             .zip(pressures)
             .map(|(contact, pressure)| {
@@ -256,7 +283,7 @@ impl Contacts {
     /// Takes what contacts press (N) after the particles have moved (m), by the linear model.
     pub(crate) fn press(&mut self, moves: &Field) {
         let count = self.bodies.particle_count;
-        let pairs = self.contacts.par_iter().zip(&mut self.pressures);
+        let pairs = self.near.par_iter().zip(&mut self.pressures);
         pairs.for_each(|(contact, pressure)| {
             let ends = contact.points.iter().zip(&contact.weights);
             let along = ends.filter(|end| (*end.0 as usize) < count).map(|(&point, weight)| {

@@ -7,7 +7,7 @@
 //! G = sum_i ( R_i - 2 (E·R_i)/(E·N) N )
 //! ```
 //!
-//! over the faces i of the edge, R_i the direction of the contour into face i. Each crossing pushes the edge and the
+//! over the faces i of the edge, `R_i` the direction of the contour into face i. Each crossing pushes the edge and the
 //! triangle apart along G, some way a step, as a contact. A contour that shrinks from its ends or closes in upon itself
 //! vanishes in the end. Pairs of which both sides take part in a crossing are let go meanwhile; all others stay protected.
 //!
@@ -102,7 +102,7 @@ impl Contacts {
 
 /// The middle of each body's points (m).
 fn middles(bodies: &Bodies, paths: &Paths) -> Vec<Vector> {
-    let mut sums = vec![(Vector::zeros(), 0.0); bodies.bodies.len()];
+    let mut sums = vec![(Vector::zeros(), 0.0); bodies.each.len()];
     for (start, &body) in paths.start.iter().zip(&bodies.body_of) {
         let (sum, count) = &mut sums[body as usize];
         *sum += start;
@@ -123,7 +123,8 @@ fn part(
     let [a, b, c] = triangle.points.map(place);
     let [p, q] = edge.points.map(place);
     let are_cloths = bodies.is_particle(edge.points[0]) && bodies.is_particle(triangle.points[0]);
-    let is_same = bodies.body_of[edge.points[0] as usize] == bodies.body_of[triangle.points[0] as usize];
+    let is_same =
+        bodies.body_of[edge.points[0] as usize] == bodies.body_of[triangle.points[0] as usize];
     let shortening = if are_cloths && !is_same { None } else { shortening(crossing, place) };
     let direction = shortening.unwrap_or_else(|| {
         let normal = (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_else(Vector::z);

@@ -65,7 +65,8 @@ impl Response {
             let State { position: wanted, velocity: residual } = &mut self.wanted;
             for axis in 0..3 {
                 let ways = wanted.0[axis].iter().zip(&*state.position.0[axis]);
-                for (particle, (out, (to, x))) in residual.0[axis].iter_mut().zip(ways).enumerate() {
+                for (particle, (out, (to, x))) in residual.0[axis].iter_mut().zip(ways).enumerate()
+                {
                     *out = inertia_of(particle) * (to - x);
                 }
             }

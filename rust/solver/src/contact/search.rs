@@ -118,9 +118,10 @@ impl<V> Search<'_, V> {
         };
         match self.is_changed {
             None => self.cloths.edges.pairs(visit),
-            Some(is_changed) => {
-                self.cloths.edges.pairs_of_marked(|item| is_marked(&edges[item as usize], is_changed), visit)
-            }
+            Some(is_changed) => self
+                .cloths
+                .edges
+                .pairs_of_marked(|item| is_marked(&edges[item as usize], is_changed), visit),
         }
     }
 
@@ -171,7 +172,8 @@ impl<V> Search<'_, V> {
     {
         let Bodies { cloths, colliders, .. } = self.bodies;
         let visit = |first: u32, second: u32, found: &mut Vec<T>| {
-            let (first, second) = (&cloths.edges[first as usize], &colliders.edges[second as usize]);
+            let (first, second) =
+                (&cloths.edges[first as usize], &colliders.edges[second as usize]);
             self.edge_edge(first, second, found);
         };
         let (edges, others) = (&self.cloths.edges, &self.colliders.edges);

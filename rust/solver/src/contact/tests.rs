@@ -1,6 +1,8 @@
 //! Contact held to brute force over all pairs, and its forces to their energy.
 
-use boucle_geometry::{Mesh, Vector, edge_crosses_triangle, edge_edge_impact, point_triangle_impact};
+use boucle_geometry::{
+    Mesh, Vector, edge_crosses_triangle, edge_edge_impact, point_triangle_impact,
+};
 use nalgebra::DMatrix;
 
 use super::candidate::Kind;
@@ -240,7 +242,7 @@ fn detection_finds_the_contacts_and_the_pairs_to_watch_that_all_pairs_have() {
                 let mut expected: Vec<[u32; 4]> = Vec::new();
                 let mut missing = Vec::new();
                 let mut found: Vec<[u32; 4]> =
-                    contacts.contacts.iter().map(|own| sorted(own.points)).collect();
+                    contacts.near.iter().map(|own| sorted(own.points)).collect();
                 found.sort_unstable();
                 let watched = names(&contacts.watched);
                 for pair in &pairs {
@@ -248,8 +250,10 @@ fn detection_finds_the_contacts_and_the_pairs_to_watch_that_all_pairs_have() {
                     if has_contact {
                         expected.push(sorted(pair.points));
                     }
-                    let is_missing = has_contact && found.binary_search(&sorted(pair.points)).is_err()
-                        || near(&pair).is_to_be_watched() && watched.binary_search(&name(pair)).is_err();
+                    let is_missing = has_contact
+                        && found.binary_search(&sorted(pair.points)).is_err()
+                        || near(&pair).is_to_be_watched()
+                            && watched.binary_search(&name(pair)).is_err();
                     // The direction at the start knows nothing of what passes beside: only boxes may leave that out.
                     if is_missing && comes_near(&contacts, pair) {
                         missing.push(*pair);
@@ -275,7 +279,7 @@ fn the_same_two_features_make_one_contact_only() {
         contacts.start_step([0, 1], 1, &coordinates(&starts));
         contacts.detect(&coordinates(&moved(&starts, 0.05, 3)), &inverse_masses, H);
         let mut features: Vec<[Vec<u32>; 2]> = contacts
-            .contacts
+            .near
             .iter()
             .map(|contact| {
                 let side = |is_first: bool| {
@@ -320,7 +324,7 @@ fn pressed(friction: f64) -> (Contacts, Vec<Vector>, Vec<f64>) {
     contacts.start_step([0, 1], 1, &coordinates(&starts));
     let ends = moved(&starts, 0.002, 3);
     contacts.detect(&coordinates(&ends), &inverse_masses, H);
-    assert!(contacts.contacts.len() > 100, "{}", contacts.contacts.len());
+    assert!(contacts.near.len() > 100, "{}", contacts.near.len());
     (contacts, ends, inverse_masses)
 }
 
@@ -332,7 +336,7 @@ fn energy(contacts: &Contacts, at: &[Vector]) -> f64 {
         });
         contact.energy(contact.gap(&way.sum()))
     };
-    contacts.contacts.iter().map(of).sum()
+    contacts.near.iter().map(of).sum()
 }
 
 fn forces(contacts: &mut Contacts, at: &[Vector]) -> Vec<Vector> {
@@ -405,7 +409,7 @@ fn the_matrix_of_contacts_with_friction_is_symmetric_positive_and_below_twice_it
     forces(&mut contacts, &at);
     let matrix = matrix(&contacts, at.len());
     let largest = matrix.amax();
-    assert!(contacts.contacts.iter().any(|contact| contact.friction > 0.0) && largest > 0.0);
+    assert!(contacts.near.iter().any(|contact| contact.friction > 0.0) && largest > 0.0);
     assert!((&matrix - matrix.transpose()).amax() < 1e-6 * largest);
     let least = |matrix: DMatrix<f64>| matrix.symmetric_eigenvalues().min();
     let lowest = least(matrix.clone());
@@ -461,15 +465,21 @@ fn truncated(
 #[test]
 fn truncated_ways_lead_through_nothing_by_brute_force() {
     for seed in 0..2 {
-        for cloths in [vec![soup(4, 1000 * seed)], vec![folded(seed)], vec![folded(seed), above(soup(3, 77 + seed))]] {
+        for cloths in [
+            vec![soup(4, 1000 * seed)],
+            vec![folded(seed)],
+            vec![folded(seed), above(soup(3, 77 + seed))],
+        ] {
             for amplitude in [0.003, 0.03, 0.3] {
                 let wanted = |starts: &[Vector]| moved(starts, amplitude, 31 * seed);
                 // As expected, a little off it, and not expected at all.
                 let little = |starts: &[Vector]| moved(&wanted(starts), 0.002, 5);
                 let still = |starts: &[Vector]| starts.to_vec();
-                let expectations: [&dyn Fn(&[Vector]) -> Vec<Vector>; 3] = [&wanted, &little, &still];
+                let expectations: [&dyn Fn(&[Vector]) -> Vec<Vector>; 3] =
+                    [&wanted, &little, &still];
                 for (number, expected) in expectations.iter().enumerate() {
-                    let (contacts, clipped, [starts, _, ends]) = truncated(&cloths, expected, wanted);
+                    let (contacts, clipped, [starts, _, ends]) =
+                        truncated(&cloths, expected, wanted);
                     let found = passes(&contacts, &starts, &ends);
                     assert!(found.is_empty(), "seed {seed}, {amplitude} m, {number}: {found:?}");
                     assert!(amplitude < 0.1 || clipped > 0, "nothing was to be cut");
@@ -522,7 +532,10 @@ fn truncation_cuts_only_those_that_meet() {
 #[test]
 fn truncated_ways_stay_out_of_colliders_that_move() {
     let flat: Vec<Vector> = (0..100)
-        .map(|i| Vector::new(f64::from(i % 10), f64::from(i / 10), 0.0) * 0.05 + 0.002 * random(i as usize))
+        .map(|i| {
+            Vector::new(f64::from(i % 10), f64::from(i / 10), 0.0) * 0.05
+                + 0.002 * random(i as usize)
+        })
         .collect();
     let faces: Vec<Vec<u32>> = (0..9_u32)
         .flat_map(|row| (0..9).map(move |column| 10 * row + column))
@@ -535,14 +548,23 @@ fn truncated_ways_stay_out_of_colliders_that_move() {
     };
     let shapes = [
         (Shape::Sphere { radius: 0.1 }, vec![Vector::new(0.23, 0.22, -0.11)]),
-        (Shape::Capsule { radius: 0.05 }, vec![Vector::new(0.1, 0.1, -0.06), Vector::new(0.4, 0.3, -0.06)]),
+        (
+            Shape::Capsule { radius: 0.05 },
+            vec![Vector::new(0.1, 0.1, -0.06), Vector::new(0.4, 0.3, -0.06)],
+        ),
         (Shape::cuboid(), (0..8).map(corner).collect()),
         (Shape::Plane, vec![Vector::new(0.0, 0.0, -0.01), Vector::new(0.0, 0.0, 1.0)]),
     ];
     for (shape, positions) in shapes {
         for (speed, amplitude) in [(0.0, 0.2), (0.05, 0.002), (0.12, 0.005)] {
             let name = "collider".to_owned();
-            let collider = Collider { name, shape: shape.clone(), positions: positions.clone(), thickness: 0.0, friction: 0.3 };
+            let collider = Collider {
+                name,
+                shape: shape.clone(),
+                positions: positions.clone(),
+                thickness: 0.0,
+                friction: 0.3,
+            };
             let (mut contacts, starts, inverse_masses) = contacts(&cloths, &[collider]);
             let targets: Vec<Vector> = positions.iter().map(|x| x + speed * Vector::z()).collect();
             contacts.aim(0, &targets);

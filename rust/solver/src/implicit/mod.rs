@@ -161,6 +161,7 @@ impl Implicit {
         self.memory.error += self.error(state, contacts, h);
         self.memory.before.copy_from(state);
         self.memory.step = h;
+        self.start_touched_anew(state, contacts, h);
         state.copy_from(&self.at);
     }
 
@@ -208,11 +209,22 @@ impl Implicit {
             let velocity = self.at.velocity.0[axis].iter_mut();
             let base = self.base.position.0[axis].iter();
             for (((x, v), reached), base) in position.zip(velocity).zip(reached.iter()).zip(base) {
-                if *x != *reached {
+                if x.to_bits() != reached.to_bits() {
                     *x = *reached;
                     *v = (*x - base) / h;
                 }
             }
+        }
+    }
+
+    /// Gives what is pressed the velocity of its way, as if it had always had it: a velocity that goes on from before an
+    /// impact bounces, with BDF2 by half.
+    fn start_touched_anew(&mut self, state: &State, contacts: &Contacts, h: f64) {
+        for particle in contacts.pressed() {
+            let particle = particle as usize;
+            let way = self.at.position.get(particle) - state.position.get(particle);
+            self.at.velocity.set(particle, &(way / h));
+            self.memory.before.velocity.set(particle, &(way / h));
         }
     }
 
@@ -281,6 +293,7 @@ impl Implicit {
         hessian.freeze(&system.layout, &at.position, h);
         hessian.tauten(taut.pulling());
         hessian.invert_blocks(&system.layout, &contacts.matrix, blocks);
+        contacts.matrix.weigh(&hessian.inertia);
     }
 
     /// Solves for the move from the present guess.
@@ -289,7 +302,12 @@ impl Implicit {
         let matrix = &hessian.without_bends(&system.layout, &contacts.matrix);
         let inverse = preconditioner.inverse(system, h);
         let operator = &hessian.on(&system.layout, &contacts.matrix);
-        gradients.solve(operator, &mut Smoothed { matrix, blocks, inverse, scratch }, STOP)
+        let contacts = &contacts.matrix;
+        gradients.solve(
+            operator,
+            &mut Smoothed { matrix, contacts, blocks, inverse, scratch },
+            STOP,
+        )
     }
 
     /// Moves the guess by the solution.
@@ -297,8 +315,8 @@ impl Implicit {
         let solution = &self.gradients.solution;
         self.taut.follow(solution, &mut self.memory.tensions);
         let inertia = |particle: usize| inertia(system, &self.air, particle, h);
-        let touched = contacts.matrix.particles();
-        let shifts = self.pieces.shifts(&self.residual.position, solution, inertia, touched);
+        let residual = &self.residual.position;
+        let shifts = self.pieces.shifts(residual, solution, inertia, &contacts.matrix);
         for axis in 0..3 {
             let position = self.at.position.0[axis].iter_mut();
             let velocity = self.at.velocity.0[axis].iter_mut();

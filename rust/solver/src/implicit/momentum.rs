@@ -8,6 +8,7 @@
 //!
 //! Moves in f32 miss it by their rounding; a common shift of the piece makes up for it.
 
+use crate::contact::ContactMatrix;
 use crate::law::Spring;
 use crate::linear::Field;
 use crate::state::Coordinates;
@@ -54,24 +55,22 @@ impl Pieces {
     }
 
     /// The shift (m) of each particle that makes up for the rounding of moves, given what they were to balance and
-    /// the inertia (kg/s²) of each, and which particles are touched from outside; none if no piece is free.
+    /// the inertia (kg/s²) of each; none if no piece is free. Pieces that touch each other are one, and what is touched by
+    /// anything that is held is not free.
     pub(super) fn shifts(
         &self,
         residual: &Coordinates,
         moves: &Field,
         inertia: impl Fn(usize) -> f64,
-        touched: &[u32],
+        contacts: &ContactMatrix,
     ) -> Option<Shifts<'_>> {
-        let mut is_free = self.is_free.clone();
-        for &particle in touched {
-            is_free[self.piece_of[particle as usize] as usize] = false;
-        }
+        let (whole_of, is_free) = self.in_touch(contacts);
         if !is_free.contains(&true) {
             return None;
         }
-        let mut sums = vec![[0.0; 4]; self.is_free.len()];
+        let mut sums = vec![[0.0; 4]; is_free.len()];
         for (particle, &piece) in self.piece_of.iter().enumerate() {
-            let sum = &mut sums[piece as usize];
+            let sum = &mut sums[whole_of[piece as usize] as usize];
             let weight = inertia(particle);
             sum[3] += weight;
             let axes = residual.0.iter().zip(&moves.0);
@@ -79,10 +78,33 @@ impl Pieces {
                 *sum += residual[particle] - weight * f64::from(moves[particle]);
             }
         }
-        let of_piece = sums.iter().zip(is_free).map(|(&[x, y, z, weight], is_free)| {
-            if is_free && weight > 0.0 { [x, y, z].map(|sum| sum / weight) } else { [0.0; 3] }
+        let of_piece = whole_of.iter().map(|&whole| {
+            let [x, y, z, weight] = sums[whole as usize];
+            let is_free = is_free[whole as usize] && weight > 0.0;
+            if is_free { [x, y, z].map(|sum| sum / weight) } else { [0.0; 3] }
         });
         Some(Shifts { piece_of: &self.piece_of, of_piece: of_piece.collect() })
+    }
+
+    /// For each piece, the first of those that it touches, and whether all of them are free.
+    fn in_touch(&self, contacts: &ContactMatrix) -> (Vec<u32>, Vec<bool>) {
+        let mut root_of: Vec<u32> = (0..self.is_free.len() as u32).collect();
+        let mut is_free = self.is_free.clone();
+        for (particles, is_held) in contacts.joints() {
+            let mut pieces = particles.map(|particle| self.piece_of[particle as usize]);
+            let Some(first) = pieces.next() else { continue };
+            is_free[first as usize] &= !is_held;
+            for piece in pieces {
+                let [a, b] = [first, piece].map(|piece| root(&mut root_of, piece));
+                root_of[a.max(b) as usize] = a.min(b);
+            }
+        }
+        for piece in 0..root_of.len() {
+            let whole = root(&mut root_of, piece as u32);
+            root_of[piece] = whole;
+            is_free[whole as usize] &= is_free[piece];
+        }
+        (root_of, is_free)
     }
 }
 
@@ -131,7 +153,9 @@ mod tests {
             moves.0[1][i] = 0.1 * i as f32;
         }
         let inertia = |particle: usize| 2.0 + particle as f64;
-        let shifts = pieces.shifts(&state.position, &moves, inertia, &[]).expect("a free piece");
+        let shifts = pieces
+            .shifts(&state.position, &moves, inertia, &ContactMatrix::default())
+            .expect("a free piece");
         assert!(shifts.of(1).iter().all(|shift| shift.to_bits() == 0));
         let balance: f64 = [0, 2, 3, 4]
             .iter()
@@ -142,6 +166,8 @@ mod tests {
             .sum();
         assert!(balance.abs() < 1e-12, "{balance}");
         pieces.follow_pins(|particle| particle >= 4);
-        assert!(pieces.shifts(&state.position, &moves, inertia, &[]).is_none());
+        assert!(
+            pieces.shifts(&state.position, &moves, inertia, &ContactMatrix::default()).is_none()
+        );
     }
 }

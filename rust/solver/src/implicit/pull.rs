@@ -2,6 +2,7 @@
 
 use super::Implicit;
 use super::taut::WithTaut;
+use crate::contact::ContactMatrix;
 use crate::linear::{Field, Operator, Stop};
 use crate::state::State;
 use crate::system::System;
@@ -75,7 +76,12 @@ impl Implicit {
             self.pull_once(system);
         }
         let mass = |particle: usize| system.masses[particle];
-        let shifts = self.pieces.shifts(&self.still.position, &self.pulling.moved, mass, &[]);
+        let shifts = self.pieces.shifts(
+            &self.still.position,
+            &self.pulling.moved,
+            mass,
+            &ContactMatrix::default(),
+        );
         for (axis, positions) in state.position.0.iter_mut().enumerate() {
             for (particle, (x, pulled)) in
                 positions.iter_mut().zip(&*self.at.position.0[axis]).enumerate()

@@ -11,9 +11,14 @@
 //! with H without its bend springs. That is symmetric and positive definite for any P: the sum of what the steps of C do
 //! together, and of P⁻¹ between a matrix and its transpose.
 //!
+//! P knows nothing of contacts either. Where they press or stick, P⁻¹ would move a particle as if it were free, and that move
+//! would set the length of all others. So each particle is made heavier in the place of H's contacts, in which
+//! `L Lᵀ = I + C/(m/h'²)`, C the block that contacts add to it: `z += L⁻ᵀ P⁻¹ L⁻¹ (r - H z)`.
+//!
 //! Hanging sheets take a quarter of the iterations that P⁻¹ alone takes, and have a smaller error when they stop. With one
 //! step in the place of two they take a third more.
 
+use crate::contact::ContactMatrix;
 use crate::linear::{BlockJacobi, Field, Inverse, LARGEST, chebyshev};
 
 use super::hessian::Product;
@@ -41,6 +46,7 @@ impl Scratch {
 pub(super) struct Smoothed<'a> {
     /// Without bend springs.
     pub(super) matrix: &'a Product<'a>,
+    pub(super) contacts: &'a ContactMatrix,
     pub(super) blocks: &'a BlockJacobi,
     pub(super) inverse: &'a mut dyn Inverse,
     pub(super) scratch: &'a mut Scratch,
@@ -48,7 +54,7 @@ pub(super) struct Smoothed<'a> {
 
 impl Inverse for Smoothed<'_> {
     fn apply_inverse(&mut self, r: &Field, z: &mut Field) {
-        let Self { matrix, blocks, inverse, scratch: Scratch { left, step } } = self;
+        let Self { matrix, contacts, blocks, inverse, scratch: Scratch { left, step } } = self;
         left.copy_from(r);
         z.fill(0.0);
         let smooth = || chebyshev::steps(SMOOTHED * LARGEST, LARGEST).take(STEPS);
@@ -56,7 +62,10 @@ impl Inverse for Smoothed<'_> {
             blocks.relax(factors, left, step, z);
             matrix.subtract(step, left);
         }
+        let heavy = contacts.lighten(left);
         inverse.apply_inverse(left, step);
+        contacts.lighten_transposed(step);
+        contacts.put_back(&heavy, left);
         z.update(step, |z, step| *z += step);
         for factors in smooth() {
             matrix.subtract(step, left);

@@ -1,7 +1,7 @@
-"""The strain of a baked cloth, beside its PC2: for every sample the largest strain of the edges at each vertex.
+"""A number at each vertex of a baked cloth (see `quantity`), beside its PC2: a row for every sample.
 
-Layout, little-endian: a magic line of 16 bytes, int32 vertex count, int32 zero; then one row a sample, float32 (n,). Only whole
-rows count, so that the file is a valid prefix at any moment.
+Layout, little-endian: a magic word of 16 bytes by the quantity, which the file's ending tells, too; int32 vertex count, int32
+zero; then one row a sample, float32 (n,). Only whole rows count, so that the file is a valid prefix at any moment.
 """
 
 from __future__ import annotations
@@ -15,7 +15,15 @@ from .points import Points
 from .refusal import cannot_write
 
 _HEADER = struct.Struct("<16sii")
-_MAGIC = b"BOUCLE STRAIN 1\n"
+_MAGIC = {
+    ".strain": b"BOUCLE STRAIN 1\n",
+    ".contact": b"BOUCLE CONTACT 1",
+    ".intersection": b"BOUCLE CROSSED 1",
+}
+
+
+def _magic(path: str) -> bytes:
+    return _MAGIC[os.path.splitext(path)[1]]
 
 
 def row_count(path: str, vertex_count: int) -> int:
@@ -26,7 +34,7 @@ def row_count(path: str, vertex_count: int) -> int:
             length = os.fstat(file.fileno()).st_size - _HEADER.size
     except OSError:
         return 0
-    if len(head) < _HEADER.size or _HEADER.unpack(head)[:2] != (_MAGIC, vertex_count):
+    if len(head) < _HEADER.size or _HEADER.unpack(head)[:2] != (_magic(path), vertex_count):
         return 0
     return length // (4 * vertex_count) if vertex_count else 0
 
@@ -61,7 +69,7 @@ class Writer:
         """
         try:
             file = open(path, "w+b", buffering=0)  # noqa: SIM115 (closed by `close`)
-            file.write(_HEADER.pack(_MAGIC, vertex_count, 0))
+            file.write(_HEADER.pack(_magic(path), vertex_count, 0))
         except OSError as error:
             raise cannot_write(path, error) from error
         return cls(path, file)
@@ -79,13 +87,13 @@ class Writer:
             raise cannot_write(path, error) from error
         return cls(path, file)
 
-    def append(self, strain: Points) -> None:
+    def append(self, row: Points) -> None:
         """Write one row, float32.
 
         Raises:
             CacheRefusal: The system did not take it all.
         """
-        data = memoryview(strain).cast("B")
+        data = memoryview(row).cast("B")
         try:
             while len(data):
                 data = data[self._file.write(data) :]

@@ -1,0 +1,42 @@
+"""What is told of every vertex beside its position: one number a frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from .._identifiers import CONTACT_ATTRIBUTE, INTERSECTION_ATTRIBUTE, STRAIN_ATTRIBUTE
+from . import points
+from .points import Points
+
+Numbers = Mapping[str, Points]
+"""Values at the vertices, float32 (n,), by the key of their quantity."""
+
+
+class Quantity(NamedTuple):
+    """One of them."""
+
+    key: str
+    """Ending of the file in which a bake keeps it, and of the setting that asks for it: `use_<key>`."""
+    attribute: str
+    """The mesh's attribute."""
+    reader: str
+    """The method of a simulation that tells it."""
+
+
+STRAIN = Quantity("strain", STRAIN_ATTRIBUTE, "read_strain")
+CONTACT = Quantity("contact", CONTACT_ATTRIBUTE, "read_contacts")
+INTERSECTION = Quantity("intersection", INTERSECTION_ATTRIBUTE, "read_intersections")
+ALL = (STRAIN, CONTACT, INTERSECTION)
+
+
+def empty(keys: tuple[str, ...], vertex_count: int) -> dict[str, Points]:
+    """A buffer for each quantity that is asked for."""
+    return {key: points.empty("f", vertex_count) for key in keys}
+
+
+def read(simulation: Any, out: Numbers) -> None:
+    """Fill the buffers from a simulation of one cloth."""
+    for quantity in ALL:
+        if quantity.key in out:
+            getattr(simulation, quantity.reader)(0, out[quantity.key])

@@ -1,0 +1,53 @@
+//! The state of a simulation as bytes, and back.
+
+use super::Simulation;
+use crate::checkpoint::Checkpoint;
+use crate::error::{Error, Result};
+use crate::pins::Pins;
+
+impl Simulation {
+    /// The whole state as bytes.
+    #[must_use]
+    pub fn checkpoint(&self) -> Vec<u8> {
+        let count = self.state.len();
+        let checkpoint = Checkpoint {
+            digest: self.digest,
+            frame: self.frame,
+            substeps: self.substeps_taken,
+            state: self.state.clone(),
+            memory: self.method.memory().cloned(),
+            colliders: self.contacts.collider_positions().to_vec(),
+            is_pinned: (0..count).map(|particle| self.system.is_pinned(particle)).collect(),
+        };
+        checkpoint.to_bytes()
+    }
+
+    /// Takes up the state of a checkpoint; what follows is bit-equal to never having stopped.
+    ///
+    /// # Errors
+    /// [`Error::BadCheckpoint`] when it is damaged or of other cloths or settings.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
+        let checkpoint = Checkpoint::from_bytes(bytes)?;
+        if checkpoint.digest != self.digest
+            || checkpoint.state.len() != self.state.len()
+            || checkpoint.colliders.len() != self.contacts.collider_positions().len()
+        {
+            return Err(Error::BadCheckpoint(
+                "is of another scene or other settings; accepted: the one that it was made from",
+            ));
+        }
+        if let (Some(memory), Some(restored)) = (self.method.memory_mut(), checkpoint.memory) {
+            *memory = restored;
+        }
+        self.contacts.place_colliders(&checkpoint.colliders);
+        self.state = checkpoint.state;
+        self.frame = checkpoint.frame;
+        self.substeps_taken = checkpoint.substeps;
+        self.iterations_taken = 0;
+        let pinned = checkpoint.is_pinned.iter().enumerate().filter(|&(_, &is_pinned)| is_pinned);
+        self.pins = Pins::new(pinned.map(|(particle, _)| particle as u32), &self.state);
+        self.follow_pins();
+        self.intersect();
+        Ok(())
+    }
+}

@@ -23,6 +23,7 @@ mod paths;
 mod recovery;
 mod response;
 mod search;
+mod settling;
 #[cfg(test)]
 mod tests;
 mod truncation;
@@ -122,12 +123,6 @@ impl Contacts {
     /// Vertices whose way was cut short, once for each step, since this was last asked.
     pub(crate) fn take_clipped(&mut self) -> u32 {
         std::mem::take(&mut self.clipped)
-    }
-
-    /// The particles that contacts press, some of them more than once.
-    pub(crate) fn pressed(&self) -> impl Iterator<Item = u32> {
-        let pressed = self.pressures().filter(|&(_, force)| force > 0.0);
-        pressed.map(|(point, _)| point).filter(|&point| self.paths.is_free(point))
     }
 
     /// The force (N) that each contact presses each of its particles with.
@@ -270,7 +265,7 @@ impl Contacts {
                 let slipping = (free - strength / contact.inertia).max(0.0);
                 let most = friction::FIRMEST * contact.inertia;
                 let resistance = friction::resistance(strength, slipping, h).min(most);
-                let [force, slope] = contact.force(contact.gap(&way));
+                let [force, slope] = contact.tangent(contact.gap(&way), pressure.force);
                 *pressure = Pressure { force, slope, resistance };
                 (normal * force - resistance * slip, [slope, resistance])
             })

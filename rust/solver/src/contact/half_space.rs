@@ -37,7 +37,7 @@ pub(super) fn end_within(start: &Vector, wanted: Vector, half_spaces: &[HalfSpac
         let [from, to] = [start, &end].map(|place| normal.dot(place) - offset);
         if to < 0.0 && from >= 0.0 { part.min(from / (from - to)) } else { part }
     });
-    start + (end - start) * (part * part.min(1.0 - 1e-9))
+    start + (end - start) * if part < 1.0 { part * (1.0 - 1e-9) } else { 1.0 }
 }
 
 #[cfg(test)]

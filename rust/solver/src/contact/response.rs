@@ -18,7 +18,7 @@ use crate::system::System;
 const NEWTON: usize = 4;
 
 /// Tight: the system is small, and what is left is momentum of nobody.
-const STOP: Stop = Stop { tolerance: 1e-4, least_iterations: 1, most_iterations: 200 };
+const STOP: Stop = Stop { tolerance: 1e-5, least_iterations: 1, most_iterations: 200 };
 
 /// Vectors of the solver.
 #[derive(Debug)]

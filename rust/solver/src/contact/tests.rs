@@ -328,18 +328,27 @@ fn pressed(friction: f64) -> (Contacts, Vec<Vector>, Vec<f64>) {
     (contacts, ends, inverse_masses)
 }
 
+/// How far the points of a contact have moved, by weight.
+fn way(contacts: &Contacts, contact: &Contact, at: &[Vector]) -> Vector {
+    let ends = contact.points.iter().zip(&contact.weights);
+    let ways = ends.filter(|end| (*end.0 as usize) < at.len()).map(|(&point, &weight)| {
+        weight * (at[point as usize] - contacts.paths.start[point as usize])
+    });
+    ways.sum()
+}
+
 fn energy(contacts: &Contacts, at: &[Vector]) -> f64 {
-    let of = |contact: &Contact| {
-        let ends = contact.points.iter().zip(&contact.weights);
-        let way = ends.filter(|end| (*end.0 as usize) < at.len()).map(|(&point, &weight)| {
-            weight * (at[point as usize] - contacts.paths.start[point as usize])
-        });
-        contact.energy(contact.gap(&way.sum()))
-    };
+    let of = |contact: &Contact| contact.energy(contact.gap(&way(contacts, contact, at)));
     contacts.near.iter().map(of).sum()
 }
 
 fn forces(contacts: &mut Contacts, at: &[Vector]) -> Vec<Vector> {
+    // As Newton's iterations leave them where they have met.
+    for index in 0..contacts.near.len() {
+        let contact = contacts.near[index];
+        let force = contact.force(contact.gap(&way(contacts, &contact, at)))[0];
+        contacts.pressures[index].force = force;
+    }
     let mut residual = State::zeros(at.len()).position;
     contacts.push(&coordinates(at), &mut residual, H);
     list(&residual, at.len())

@@ -36,6 +36,9 @@ const FAR_TOO_FEW: f64 = 2.0;
 /// folds, and no number of steps makes it converge.
 const MOST_IN_CONTACT: u32 = 6;
 
+/// The fewest: what slides and stops is then right within a percent.
+const LEAST_IN_CONTACT: u32 = 4;
+
 /// The longest way (m) that colliders and cloth go towards each other in a step.
 const LONGEST_WAY: f64 = 0.15;
 
@@ -54,8 +57,10 @@ impl Accuracy {
     /// Steps after a frame of so many with a mean error (m).
     pub(crate) fn after(self, substeps: u32, error: f64) -> u32 {
         let wanted = f64::from(substeps) * (error / (SCALE * self.tolerance * self.size)).cbrt();
-        let most = if self.is_in_contact { MOST_IN_CONTACT } else { u32::MAX };
-        let count = at_least(wanted).min(most);
+        let mut count = at_least(wanted);
+        if self.is_in_contact {
+            count = count.clamp(LEAST_IN_CONTACT, MOST_IN_CONTACT);
+        }
         if count < substeps && wanted > CLEARLY * f64::from(count) { substeps } else { count }
     }
 
@@ -124,6 +129,7 @@ mod tests {
         assert_eq!(ACCURACY.plan(3, 0.0, 2.5, 1.0 / 24.0), 24);
         let touching = Accuracy { is_in_contact: true, ..ACCURACY };
         assert_eq!(touching.after(4, f64::INFINITY), MOST_IN_CONTACT);
+        assert_eq!(touching.after(4, 0.0), LEAST_IN_CONTACT);
         assert_eq!(touching.again(4, f64::INFINITY), None);
     }
 }

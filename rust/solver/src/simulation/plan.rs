@@ -114,7 +114,7 @@ impl Simulation {
 
 /// Parts of a frame after which explicit steps meet contacts, at the least, and the longest way (m) that colliders and
 /// cloth go towards each other in one.
-const MEETINGS: f64 = 8.0;
+const MEETINGS: f64 = 24.0;
 const LONGEST_WAY: f64 = 0.15;
 
 /// After how many steps contacts are met, if colliders and cloth go so far (m) towards each other over a frame.

@@ -137,10 +137,10 @@ impl ContactMatrix {
     }
 
     /// Sets slope k and resistance c (N/m) of every contact.
-    pub(super) fn set(&mut self, factors: &[[f64; 2]]) {
+    pub(super) fn set(&mut self, factors: impl Iterator<Item = [f64; 2]>) {
         for (tangent, [slope, resistance]) in self.tangents.iter_mut().zip(factors) {
             tangent.along = (slope - resistance) as f32;
-            tangent.all_around = *resistance as f32;
+            tangent.all_around = resistance as f32;
         }
     }
 

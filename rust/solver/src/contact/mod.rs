@@ -20,6 +20,7 @@ mod half_space;
 mod intersections;
 mod matrix;
 mod paths;
+mod pressing;
 mod recovery;
 mod response;
 mod search;
@@ -33,7 +34,6 @@ use rayon::prelude::*;
 
 use crate::cloth::Cloth;
 use crate::collider::Collider;
-use crate::linear::Field;
 use crate::state::Coordinates;
 use bodies::Bodies;
 use candidate::Candidate;
@@ -41,19 +41,9 @@ use contact::{Contact, Near};
 use features::Trees;
 pub(crate) use matrix::ContactMatrix;
 use paths::Paths;
+use pressing::Pressure;
 use recovery::Tangle;
 pub(crate) use response::Response;
-
-/// What a contact does at a guess.
-#[derive(Clone, Copy, Debug, Default)]
-struct Pressure {
-    /// N, along its normal.
-    force: f64,
-    /// N/m
-    slope: f64,
-    /// N/m, across its normal.
-    resistance: f64,
-}
 
 /// Everything that touches, and how.
 #[derive(Debug)]
@@ -237,56 +227,6 @@ impl Contacts {
         self.matrix.join(&self.near, inverse_masses);
         self.pressures.clear();
         self.pressures.resize(self.near.len(), Pressure::default());
-    }
-
-    /// Adds the forces (N) of contacts at these positions (m) to the residual, and freezes their tangents, in a step of h
-    /// seconds. Friction takes the pressure that the last solution found.
-    pub(crate) fn push(&mut self, at: &Coordinates, residual: &mut Coordinates, h: f64) {
-        let Self { near, pressures, paths, origins, bodies, .. } = self;
-        let moved = |point: u32| {
-            if bodies.is_particle(point) { at.get(point as usize) } else { paths.end(point) }
-        };
-        let pushed: Vec<(Vector, [f64; 2])> = near
-            .par_iter()
-            .zip(pressures)
-            .map(|(contact, pressure)| {
-                let (mut way, mut slip) = (Vector::zeros(), Vector::zeros());
-                for (&point, &weight) in contact.points.iter().zip(&contact.weights) {
-                    if weight != 0.0 {
-                        let place = moved(point);
-                        way += weight * (place - paths.start[point as usize]);
-                        slip += weight * (place - origins[point as usize]);
-                    }
-                }
-                let normal = &contact.normal;
-                slip -= normal * normal.dot(&slip);
-                let free = slip.norm() * (1.0 + pressure.resistance / contact.inertia);
-                let strength = contact.friction * pressure.force;
-                let slipping = (free - strength / contact.inertia).max(0.0);
-                let most = friction::FIRMEST * contact.inertia;
-                let resistance = friction::resistance(strength, slipping, h).min(most);
-                let [force, slope] = contact.tangent(contact.gap(&way), pressure.force);
-                *pressure = Pressure { force, slope, resistance };
-                (normal * force - resistance * slip, [slope, resistance])
-            })
-            .collect();
-        let (forces, factors): (Vec<_>, Vec<_>) = pushed.into_iter().unzip();
-        self.matrix.set(&factors);
-        self.matrix.add_forces(&forces, residual);
-    }
-
-    /// Takes what contacts press (N) after the particles have moved (m), by the linear model.
-    pub(crate) fn press(&mut self, moves: &Field) {
-        let count = self.bodies.particle_count;
-        let pairs = self.near.par_iter().zip(&mut self.pressures);
-        pairs.for_each(|(contact, pressure)| {
-            let ends = contact.points.iter().zip(&contact.weights);
-            let along = ends.filter(|end| (*end.0 as usize) < count).map(|(&point, weight)| {
-                let step = moves.0.each_ref().map(|axis| f64::from(axis[point as usize]));
-                weight * contact.normal.dot(&Vector::from(step))
-            });
-            pressure.force = (pressure.force - pressure.slope * along.sum::<f64>()).max(0.0);
-        });
     }
 
     /// Calls `visit` with each particle and each plane that it may touch, and the plane's normal at the end of the step.

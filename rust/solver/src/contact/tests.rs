@@ -12,6 +12,7 @@ use super::*;
 use crate::cloth::Mass;
 use crate::collider::Shape;
 use crate::collision::Collision;
+use crate::linear::Field;
 use crate::material::SpringMaterial;
 use crate::scatter::scattered;
 use crate::state::State;
@@ -343,15 +344,19 @@ fn energy(contacts: &Contacts, at: &[Vector]) -> f64 {
 }
 
 fn forces(contacts: &mut Contacts, at: &[Vector]) -> Vec<Vector> {
-    // As Newton's iterations leave them where they have met.
+    // As Newton's iterations leave them where they have met: nothing is left.
+    let mut others = Vec::new();
     for index in 0..contacts.near.len() {
         let contact = contacts.near[index];
         let force = contact.force(contact.gap(&way(contacts, &contact, at)))[0];
         contacts.pressures[index].force = force;
+        others.push(-contact.normal * force);
     }
     let mut residual = State::zeros(at.len()).position;
+    contacts.matrix.add_forces(&others, &mut residual);
+    let balance = list(&residual, at.len());
     contacts.push(&coordinates(at), &mut residual, H);
-    list(&residual, at.len())
+    list(&residual, at.len()).iter().zip(&balance).map(|(left, others)| left - others).collect()
 }
 
 #[test]

@@ -45,11 +45,11 @@ fn gone(mut simulation: Simulation, along: Vector) -> [f64; 2] {
     [way, mean(&simulation.velocities(0))].map(|vector| vector.dot(&along))
 }
 
-/// Implicit Euler goes `a t (t + h)/2`: up to 1/48 more than the half of `a t²` that BDF2 goes.
+/// Implicit Euler goes `a t (t + h)/2`: 1/96 more than the half of `a t²` that BDF2 goes.
 #[test]
 fn a_patch_on_a_slope_of_35_degrees_slides_with_coulombs_acceleration() {
     for (integrator, late) in
-        [(IntegratorKind::Bdf2, 0.0), (IntegratorKind::ImplicitEuler, 1.0 / 48.0)]
+        [(IntegratorKind::Bdf2, 0.0), (IntegratorKind::ImplicitEuler, 1.0 / 96.0)]
     {
         let simulation = on_a_slope(35.0, [0.5, 0.5], integrator);
         let [way, speed] = gone(simulation, Vector::x());
@@ -102,9 +102,12 @@ fn the_friction_of_a_pair_is_the_geometric_mean_of_both_sides() {
     assert_close("ice", way([0.0, 1.0]), free, 1e-3);
 }
 
+/// Implicit Euler goes half a step's way less than `v²/2a`: steps of 1/96 s.
 #[test]
 fn a_patch_of_2_m_per_s_slides_to_a_stop_where_friction_has_used_up_its_energy() {
-    for integrator in IMPLICIT {
+    for (integrator, late) in
+        [(IntegratorKind::Bdf2, 0.0), (IntegratorKind::ImplicitEuler, 1.0 / 96.0)]
+    {
         for (friction, expected) in [(0.2, 1.0194), (0.4, 0.5097), (0.7, 0.2912)] {
             let mut simulation = on_a_slope(0.0, [friction, friction], integrator);
             let start = mean(&simulation.positions(0));
@@ -116,7 +119,7 @@ fn a_patch_of_2_m_per_s_slides_to_a_stop_where_friction_has_used_up_its_energy()
             run(&mut simulation, 48);
             let way = (mean(&simulation.positions(0)) - settled).x;
             let what = format!("{integrator:?}, friction {friction}");
-            assert_close(&what, way, expected, 0.02);
+            assert_close(&what, way, expected - late, 0.02);
             let speed = mean(&simulation.velocities(0)).norm();
             assert!(speed < 1e-3, "{what}: it still moves at {speed} m/s");
         }

@@ -1,0 +1,117 @@
+//! What contacts press and rub at a guess of Newton's method.
+//!
+//! The force of a contact is far from linear over the way of a step: it sets in, and friction slides or sticks. So each
+//! contact takes its tangent where it would come to rest by itself, with the mass m that it feels. If all other forces
+//! leave r (N) at its points, and its own last force was F (N), it would without it go
+//!
+//! ```text
+//! a = m/h'²        sum_i w_i r_i h'²/m_i - F/a
+//! ```
+//!
+//! farther than it is now. Where all have met, nothing is left, and the tangent is that of the law.
+
+use boucle_geometry::Vector;
+use rayon::prelude::*;
+
+use super::contact::Contact;
+use super::{Contacts, friction};
+use crate::linear::Field;
+use crate::state::Coordinates;
+
+/// What a contact does at a guess.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pressure {
+    /// N, along its normal.
+    pub(super) force: f64,
+    /// N/m
+    slope: f64,
+    /// N/m, across its normal.
+    resistance: f64,
+}
+
+/// How a contact has moved.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    /// Gap (m).
+    gap: f64,
+    /// Across the normal (m), since the step began.
+    slip: Vector,
+}
+
+impl Contacts {
+    /// Adds the forces (N) of contacts at these positions (m) to those of everything else, and freezes their tangents, in a
+    /// step of h seconds. Friction takes the pressure that the last solution found.
+    pub(crate) fn push(&mut self, at: &Coordinates, residual: &mut Coordinates, h: f64) {
+        let ways: Vec<Way> = self.near.par_iter().map(|contact| self.way_of(contact, at)).collect();
+        let last: Vec<Vector> = self
+            .near
+            .par_iter()
+            .zip(&self.pressures)
+            .zip(&ways)
+            .map(|((contact, pressure), way)| {
+                contact.normal * pressure.force - pressure.resistance * way.slip
+            })
+            .collect();
+        self.matrix.add_forces(&last, residual);
+        let left = &*residual;
+        let pressed = self.near.par_iter().zip(&self.pressures).zip(&ways).zip(&last);
+        let pressed: Vec<(Pressure, Vector)> = pressed
+            .map(|(((contact, pressure), way), last)| {
+                let alone = contact.imbalance(left) - last / contact.inertia;
+                let pressure = pressure.renewed(contact, way, &alone, h);
+                let force = contact.normal * pressure.force - pressure.resistance * way.slip;
+                (pressure, force - last)
+            })
+            .collect();
+        let (pressures, changes): (Vec<_>, Vec<_>) = pressed.into_iter().unzip();
+        self.pressures = pressures;
+        self.matrix.set(self.pressures.iter().map(|own| [own.slope, own.resistance]));
+        self.matrix.add_forces(&changes, residual);
+    }
+
+    fn way_of(&self, contact: &Contact, at: &Coordinates) -> Way {
+        let (mut way, mut slip) = (Vector::zeros(), Vector::zeros());
+        for (&point, &weight) in contact.points.iter().zip(&contact.weights) {
+            if weight != 0.0 {
+                let place = if self.bodies.is_particle(point) {
+                    at.get(point as usize)
+                } else {
+                    self.paths.end(point)
+                };
+                way += weight * (place - self.paths.start[point as usize]);
+                slip += weight * (place - self.origins[point as usize]);
+            }
+        }
+        let normal = &contact.normal;
+        Way { gap: contact.gap(&way), slip: slip - normal * normal.dot(&slip) }
+    }
+
+    /// Takes what contacts press (N) after the particles have moved (m), by the linear model.
+    pub(crate) fn press(&mut self, moves: &Field) {
+        let count = self.bodies.particle_count;
+        let pairs = self.near.par_iter().zip(&mut self.pressures);
+        pairs.for_each(|(contact, pressure)| {
+            let ends = contact.points.iter().zip(&contact.weights);
+            let along = ends.filter(|end| (*end.0 as usize) < count).map(|(&point, weight)| {
+                let step = moves.0.each_ref().map(|axis| f64::from(axis[point as usize]));
+                weight * contact.normal.dot(&Vector::from(step))
+            });
+            pressure.force = (pressure.force - pressure.slope * along.sum::<f64>()).max(0.0);
+        });
+    }
+}
+
+impl Pressure {
+    /// The same at a new guess, where the contact would go `alone` (m) without its own last force.
+    fn renewed(&self, contact: &Contact, way: &Way, alone: &Vector, h: f64) -> Self {
+        let normal = &contact.normal;
+        let along = normal.dot(alone);
+        let slipped = (way.slip + alone - normal * along).norm();
+        let strength = contact.friction * self.force;
+        let slipping = (slipped - strength / contact.inertia).max(0.0);
+        let most = friction::FIRMEST * contact.inertia;
+        let resistance = friction::resistance(strength, slipping, h).min(most);
+        let [force, slope] = contact.tangent(way.gap, way.gap + along);
+        Self { force, slope, resistance }
+    }
+}

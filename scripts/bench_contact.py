@@ -22,9 +22,9 @@ QUICK_SIDES = (64,)
 THREADS = 2
 SECONDS = {64: 60.0, 128: 120.0}
 """No frame of ours begins later."""
-BLENDER_SECONDS = {64: 60.0, 128: 300.0}
+BLENDER_SECONDS = {64: 60.0, 128: 180.0}
 """No frame of Blender's begins later."""
-SCENE_SECONDS = 60.0
+SCENE_SECONDS = 45.0
 """A scene at full size is stopped after as long."""
 FASTER = {64: 10.0, 128: 20.0}
 """Times the speed of Blender's cloth, as the mean over frames."""

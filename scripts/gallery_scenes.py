@@ -18,6 +18,8 @@ class Exhibit:
     overrides: tuple[str, ...] = ()
     clear: tuple[str, ...] = ()
     """Colliders that are seen through."""
+    plane: float = 12.0
+    """m, half the side of what stands for an endless plane."""
 
 
 def grid(cloth: str, side: int, thickness: float, *more: str) -> tuple[str, ...]:
@@ -44,15 +46,15 @@ EXHIBITS = (
     Exhibit(
         "needles",
         "At 30 m/s on a bed of needles: none pierces it",
-        6,
-        View(center=(0.0, 0.0, 0.17), width=1.4, height=1.05, turn=25.0, lift=24.0),
+        3,
+        View(center=(0.0, 0.0, 0.2), width=1.4, height=1.05, turn=25.0, lift=20.0),
         grid("sheet", 56, 0.0055),
     ),
     Exhibit(
         "folding_strip",
         "A strip that lands end-on and folds into a stack",
-        31,
-        View(center=(0.0, 0.0, 0.35), width=1.1, height=0.825, turn=62.0, lift=12.0),
+        12,
+        View(center=(0.0, 0.0, 0.5), width=1.6, height=1.2, turn=62.0, lift=10.0),
         ("cloth.strip.grid.vertices=[8,141]", "collision.thickness=0.0035"),
     ),
     Exhibit(
@@ -68,10 +70,10 @@ EXHIBITS = (
     ),
     Exhibit(
         "twist",
-        "A tube whose rim turns five times: rope-making",
-        61,
-        View(center=(0.0, 0.0, -0.2), width=2.5, height=1.875, turn=20.0, lift=8.0),
-        ("scene.frames=[1,61]",),
+        "A tube whose rim turns: rope-making",
+        43,
+        View(center=(0.0, 0.0, 0.25), width=1.8, height=1.35, turn=20.0, lift=8.0),
+        ("scene.frames=[1,43]",),
     ),
     Exhibit(
         "funnel",
@@ -84,35 +86,34 @@ EXHIBITS = (
     Exhibit(
         "tablecloth",
         "A table-cloth, pulled away",
-        20,
-        View(center=(0.35, 0.0, -0.2), width=2.4, height=1.8, turn=25.0, lift=26.0),
+        17,
+        View(center=(0.42, 0.0, -0.1), width=2.4, height=1.8, turn=25.0, lift=26.0),
         grid("cloth", 52, 0.006),
     ),
     Exhibit(
         "closing_plates",
         "Between plates that close to three thicknesses",
-        18,
-        View(center=(0.0, 0.0, 0.05), width=1.7, height=1.275, turn=25.0, lift=14.0),
+        13,
+        View(center=(0.0, 0.0, 0.07), width=1.8, height=1.35, turn=20.0, lift=10.0),
         ("cloth.sheet.grid.vertices=[40,40]", "collision.thickness=0.01"),
         ("upper",),
     ),
     Exhibit(
         "layers",
-        "Fifty sheets that have fallen on each other",
-        25,
-        View(center=(0.0, 0.0, 0.2), width=0.64, height=0.48, turn=25.0, lift=14.0),
+        "Fifty sheets, dropped as a pile",
+        11,
+        View(center=(0.0, 0.0, 0.22), width=0.95, height=0.7125, turn=25.0, lift=14.0),
     ),
     Exhibit(
         "fast_sphere",
         "A ball of 60 m/s, which takes the sheet along",
         3,
-        View(center=(0.0, 0.2, -0.1), width=3.0, height=2.25, turn=55.0, lift=14.0),
-        grid("sheet", 56, 0.009),
+        View(center=(0.0, 0.45, 0.0), width=3.3, height=2.475, turn=70.0, lift=12.0),
     ),
     Exhibit(
         "moving_body",
         "On a body that sways and breathes",
-        30,
+        29,
         View(center=(0.0, 0.0, -0.1), width=1.7, height=1.275, turn=25.0, lift=18.0),
         grid("sheet", 56, 0.0065),
     ),
@@ -120,14 +121,15 @@ EXHIBITS = (
         "incline",
         "Friction 0.5 on 35°: it slides as Coulomb says",
         20,
-        View(center=(0.4, 0.0, -0.3), width=2.2, height=1.65, turn=12.0, lift=16.0),
+        View(center=(0.15, 0.0, -0.1), width=1.9, height=1.425, turn=20.0, lift=16.0),
         grid("patch", 32, 0.004, "cloth.patch.grid.center=[0,0,0.004]"),
+        plane=0.9,
     ),
     Exhibit(
         "cs184_plane",
         "Berkeley's CS184: on a plane",
         20,
-        View(center=(0.5, 0.0, 0.05), width=1.8, height=1.35, turn=25.0, lift=24.0),
+        View(center=(0.5, 0.5, 0.0), width=1.6, height=1.2, turn=25.0, lift=24.0),
     ),
     Exhibit(
         "cs184_sphere",
@@ -139,6 +141,6 @@ EXHIBITS = (
         "cs184_self_collision",
         "CS184: an upright sheet on a plane and on itself",
         25,
-        View(center=(0.5, 0.0, 0.2), width=1.5, height=1.125, turn=40.0, lift=20.0),
+        View(center=(0.5, 0.0, 0.08), width=1.3, height=0.975, turn=40.0, lift=20.0),
     ),
 )

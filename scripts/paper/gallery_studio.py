@@ -23,8 +23,6 @@ BACKS = ((0.78, 0.71, 0.58), (0.85, 0.79, 0.66), (0.85, 0.79, 0.66))
 STONE = (0.42, 0.42, 0.43)
 CLEAR = 0.25
 """How much of what is seen through covers what is behind."""
-PLANE = 3.0
-"""m, half the side of what stands for an endless plane."""
 
 
 class GalleryStudio(Studio):
@@ -51,7 +49,7 @@ class GalleryStudio(Studio):
         ]
         for collider in description.get("collider", []):
             material = self.clear if collider["name"] in exhibit.clear else self.stone
-            made.append(self.build_collider(collider, exhibit.frame, scene.parent, material))
+            made.append(self.build_collider(collider, exhibit, scene.parent, material))
         render, view = self.scene.render, exhibit.view
         render.resolution_x = width
         render.resolution_y = round(width * view.height / view.width)
@@ -70,11 +68,11 @@ class GalleryStudio(Studio):
         return self.link(mesh)
 
     def build_collider(
-        self, collider: dict[str, Any], frame: int, folder: Path, material: Any
+        self, collider: dict[str, Any], exhibit: Exhibit, folder: Path, material: Any
     ) -> bpy.types.Object:
-        """A collider where it is at a frame."""
+        """A collider where it is at the exhibit's frame."""
         if "mesh" in collider:
-            return self.build_mesh(collider, frame, folder, material)
+            return self.build_mesh(collider, exhibit.frame, folder, material)
         import bmesh
 
         mesh = bpy.data.meshes.new("Collider")
@@ -86,14 +84,16 @@ class GalleryStudio(Studio):
             bmesh.ops.create_cube(work, size=1.0)
             bmesh.ops.scale(work, vec=collider["box"]["size"], verts=work.verts)
         else:
-            bmesh.ops.create_grid(work, x_segments=1, y_segments=1, size=PLANE)
+            bmesh.ops.create_grid(work, x_segments=1, y_segments=1, size=exhibit.plane)
         work.to_mesh(mesh)
         work.free()
         mesh.materials.append(material)
         if "sphere" in collider:
             mesh.shade_smooth()
         made = self.link(mesh)
-        made.matrix_world = Matrix.Translation(motion(collider, frame)) @ rest_place(collider)
+        made.matrix_world = Matrix.Translation(motion(collider, exhibit.frame)) @ rest_place(
+            collider
+        )
         return made
 
     def build_mesh(
@@ -104,7 +104,9 @@ class GalleryStudio(Studio):
 
         file = folder / collider["mesh"]
         if "cache" in collider:
-            positions = frame_of(folder / collider["cache"], (frame - 1) // 2)
+            positions = frame_of(
+                folder / collider["cache"], (frame - 1) // 2
+            )  # a sample each second frame
         else:
             lines = file.read_text(encoding="utf-8").splitlines()
             positions = [list(map(float, x.split()[1:4])) for x in lines if x.startswith("v ")]

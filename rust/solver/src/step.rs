@@ -45,11 +45,11 @@ impl Step<'_> {
     ) {
         let is_last = self.number == self.count;
         let done = self.number - 1;
-        if !contacts.is_empty() && done % self.stride == 0 {
+        if !contacts.is_empty() && done.is_multiple_of(self.stride) {
             let end = (done + self.stride).min(self.count);
             contacts.start_step([done, end], self.count, &state.position);
         }
-        let meets = !contacts.is_empty() && (is_last || self.number % self.stride == 0);
+        let meets = !contacts.is_empty() && (is_last || self.number.is_multiple_of(self.stride));
         method.step(self.system, state, contacts, self.h);
         if let (Method::Explicit(.., response), true) = (&mut *method, meets) {
             let steps = done % self.stride + 1;

@@ -34,7 +34,7 @@ pub(super) struct Plane {
 #[derive(Debug)]
 pub(super) struct Bodies {
     /// Cloths, then colliders.
-    pub(super) bodies: Vec<Body>,
+    pub(super) each: Vec<Body>,
     pub(super) body_of: Vec<u32>,
     /// Points that move by themselves; the others are colliders'.
     pub(super) particle_count: usize,
@@ -55,7 +55,7 @@ impl Bodies {
     pub(super) fn new(cloths: &[Cloth], colliders: &[Collider]) -> Self {
         let particle_count = cloths.iter().map(|cloth| cloth.positions.len()).sum();
         let mut bodies = Self {
-            bodies: Vec::new(),
+            each: Vec::new(),
             body_of: Vec::new(),
             particle_count,
             cloths: Features::default(),
@@ -76,13 +76,13 @@ impl Bodies {
     }
 
     fn add_cloth(&mut self, cloth: &Cloth, base: u32, collider_count: usize) {
-        let body = self.bodies.len() as u32;
+        let body = self.each.len() as u32;
         self.rest.extend_from_slice(&cloth.positions);
         self.body_of.resize(self.rest.len(), body);
         let nothing =
             Collision { with_self: false, colliders: Some(Vec::new()), ..Collision::default() };
         let collision = cloth.collision.as_ref().unwrap_or(&nothing);
-        self.bodies.push(Body {
+        self.each.push(Body {
             radius: 0.0,
             thickness: collision.thickness,
             friction: collision.friction,
@@ -110,10 +110,10 @@ impl Bodies {
     }
 
     fn add_collider(&mut self, collider: &Collider) {
-        let (body, base) = (self.bodies.len() as u32, self.rest.len() as u32);
+        let (body, base) = (self.each.len() as u32, self.rest.len() as u32);
         self.rest.extend_from_slice(&collider.positions);
         self.body_of.resize(self.rest.len(), body);
-        self.bodies.push(Body {
+        self.each.push(Body {
             radius: collider.shape.radius(),
             thickness: collider.thickness,
             friction: collider.friction,
@@ -137,7 +137,7 @@ impl Bodies {
     }
 
     pub(super) fn body(&self, point: u32) -> &Body {
-        &self.bodies[self.body_of[point as usize] as usize]
+        &self.each[self.body_of[point as usize] as usize]
     }
 
     /// Whether two features may touch; the first is one of a cloth.
@@ -150,7 +150,7 @@ impl Bodies {
         let [one, other] = [first[0], second[0]].map(|point| self.body_of[point as usize]);
         let (kind, meet) = match (other as usize).checked_sub(self.meets.len()) {
             Some(collider) => (1, self.meets[one as usize][collider]),
-            None if one == other => (0, self.bodies[one as usize].with_self),
+            None if one == other => (0, self.each[one as usize].with_self),
             None => return true,
         };
         let is_included =

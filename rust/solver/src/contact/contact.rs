@@ -118,7 +118,7 @@ impl Near {
         } else {
             thickness.min(way_out(distance, thickness))
         };
-        let [one, other] = owners.map(|body| bodies.bodies[body as usize].friction);
+        let [one, other] = owners.map(|body| bodies.each[body as usize].friction);
         (nearest < reach).then_some(Contact {
             points,
             weights: closest.weights,
@@ -213,6 +213,36 @@ impl Contact {
         } else {
             [self.stiffness * (depth - 0.5 * ramp), self.stiffness]
         }
+    }
+
+    /// The depth (m) at which the contact would rest by itself, with the mass that it feels, if that went to a depth (m)
+    /// without it: of `a (free - p) = f(p)`.
+    #[inline]
+    fn rest(&self, free: f64) -> f64 {
+        let Self { inertia, stiffness, reach, .. } = *self;
+        let ramp = RAMP * reach.abs();
+        let by_ramp = stiffness / (inertia * ramp);
+        let depth = ((1.0 + 2.0 * by_ramp * free).sqrt() - 1.0) / by_ramp;
+        if depth < ramp {
+            depth
+        } else {
+            (inertia * free + 0.5 * stiffness * ramp) / (inertia + stiffness)
+        }
+    }
+
+    /// Force (N) and slope (N/m) at a gap (m) for Newton's method, where the last iteration left a force (N): those of the
+    /// tangent at the depth at which the contact would rest by itself. From the far side of the ramp Newton's own tangent
+    /// leads there in halves only.
+    #[inline]
+    pub(super) fn tangent(&self, gap: f64, last: f64) -> [f64; 2] {
+        let depth = self.reach - gap;
+        let free = depth + last / self.inertia;
+        if free <= 0.0 || self.stiffness == 0.0 {
+            return [0.0, 0.0];
+        }
+        let rest = self.rest(free);
+        let [force, slope] = self.force(self.reach - rest);
+        [(force + slope * (depth - rest)).max(0.0), slope]
     }
 
     /// Energy (J) at a gap (m).

@@ -298,8 +298,8 @@ impl Tangent {
     fn pull(&self, p: &Field, sign: f32) -> [f32; 3] {
         let mut u = [0.0_f32; 3];
         for (point, weight) in self.points.into_iter().zip(self.weights) {
-            for axis in 0..3 {
-                u[axis] += weight * p.0[axis][point as usize];
+            for (sum, axis) in u.iter_mut().zip(&p.0) {
+                *sum += weight * axis[point as usize];
             }
         }
         let [x, y, z] = self.normal;

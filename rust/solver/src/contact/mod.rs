@@ -23,9 +23,10 @@ mod paths;
 mod recovery;
 mod response;
 mod search;
-mod truncation;
+mod settling;
 #[cfg(test)]
 mod tests;
+mod truncation;
 
 use boucle_geometry::Vector;
 use rayon::prelude::*;
@@ -65,7 +66,7 @@ pub(crate) struct Contacts {
     origins: Vec<Vector>,
     /// Where the colliders' points are (m) at the start and at the end of the frame.
     frame: [Vec<Vector>; 2],
-    contacts: Vec<Contact>,
+    near: Vec<Contact>,
     /// What has passed through.
     tangle: Tangle,
     /// Candidates that may meet on ways near those that were expected, and those ways (m).
@@ -91,7 +92,7 @@ impl Contacts {
             paths: Paths::at_rest(&bodies.rest),
             origins: bodies.rest.clone(),
             frame: [of_colliders.to_vec(), of_colliders.to_vec()],
-            contacts: Vec::new(),
+            near: Vec::new(),
             tangle: Tangle::default(),
             watched: Vec::new(),
             expected: vec![Vector::zeros(); bodies.rest.len()],
@@ -116,7 +117,7 @@ impl Contacts {
 
     /// How many contacts the last step had.
     pub(crate) fn count(&self) -> u32 {
-        self.contacts.len() as u32
+        self.near.len() as u32
     }
 
     /// Vertices whose way was cut short, once for each step, since this was last asked.
@@ -124,15 +125,9 @@ impl Contacts {
         std::mem::take(&mut self.clipped)
     }
 
-    /// The particles that contacts press, some of them more than once.
-    pub(crate) fn pressed(&self) -> impl Iterator<Item = u32> {
-        let pressed = self.pressures().filter(|&(_, force)| force > 0.0);
-        pressed.map(|(point, _)| point).filter(|&point| self.paths.is_free(point))
-    }
-
     /// The force (N) that each contact presses each of its particles with.
     pub(crate) fn pressures(&self) -> impl Iterator<Item = (u32, f64)> {
-        let points = self.contacts.iter().zip(&self.pressures).flat_map(|(contact, pressure)| {
+        let points = self.near.iter().zip(&self.pressures).flat_map(|(contact, pressure)| {
             let shares = contact.weights.map(|weight| weight.abs() * pressure.force);
             contact.points.into_iter().zip(shares)
         });
@@ -238,20 +233,20 @@ impl Contacts {
             contacts.extend(Contact::with_plane(points, normal, &self.bodies, &self.paths));
         });
         contacts.par_iter_mut().for_each(|contact| contact.stiffen(inverse_masses, h));
-        self.contacts = contacts;
-        self.matrix.join(&self.contacts, inverse_masses);
+        self.near = contacts;
+        self.matrix.join(&self.near, inverse_masses);
         self.pressures.clear();
-        self.pressures.resize(self.contacts.len(), Pressure::default());
+        self.pressures.resize(self.near.len(), Pressure::default());
     }
 
     /// Adds the forces (N) of contacts at these positions (m) to the residual, and freezes their tangents, in a step of h
     /// seconds. Friction takes the pressure that the last solution found.
     pub(crate) fn push(&mut self, at: &Coordinates, residual: &mut Coordinates, h: f64) {
-        let Self { contacts, pressures, paths, origins, bodies, .. } = self;
+        let Self { near, pressures, paths, origins, bodies, .. } = self;
         let moved = |point: u32| {
             if bodies.is_particle(point) { at.get(point as usize) } else { paths.end(point) }
         };
-        let pushed: Vec<(Vector, [f64; 2])> = contacts
+        let pushed: Vec<(Vector, [f64; 2])> = near
             .par_iter()
             .zip(pressures)
             .map(|(contact, pressure)| {
@@ -270,7 +265,7 @@ impl Contacts {
                 let slipping = (free - strength / contact.inertia).max(0.0);
                 let most = friction::FIRMEST * contact.inertia;
                 let resistance = friction::resistance(strength, slipping, h).min(most);
-                let [force, slope] = contact.force(contact.gap(&way));
+                let [force, slope] = contact.tangent(contact.gap(&way), pressure.force);
                 *pressure = Pressure { force, slope, resistance };
                 (normal * force - resistance * slip, [slope, resistance])
             })
@@ -283,7 +278,7 @@ impl Contacts {
     /// Takes what contacts press (N) after the particles have moved (m), by the linear model.
     pub(crate) fn press(&mut self, moves: &Field) {
         let count = self.bodies.particle_count;
-        let pairs = self.contacts.par_iter().zip(&mut self.pressures);
+        let pairs = self.near.par_iter().zip(&mut self.pressures);
         pairs.for_each(|(contact, pressure)| {
             let ends = contact.points.iter().zip(&contact.weights);
             let along = ends.filter(|end| (*end.0 as usize) < count).map(|(&point, weight)| {

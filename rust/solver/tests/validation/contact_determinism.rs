@@ -73,7 +73,8 @@ fn what_touches_has_the_same_bits_with_one_two_three_four_and_eight_threads() {
 #[test]
 fn a_checkpoint_in_the_midst_of_contact_goes_on_with_the_same_bits() {
     for (what, scene) in SCENES {
-        for integrator in [IntegratorKind::Bdf2, IntegratorKind::ImplicitEuler, IntegratorKind::Verlet]
+        for integrator in
+            [IntegratorKind::Bdf2, IntegratorKind::ImplicitEuler, IntegratorKind::Verlet]
         {
             let mut whole = scene(integrator, 1);
             let mut checkpoints = Vec::new();

@@ -26,7 +26,8 @@ fn energy(certificate: &Certificate) -> f64 {
 /// times as stiff as inertia is over a step: that is below a twentieth.
 #[test]
 fn a_sheet_dropped_on_a_floor_never_gains_energy() {
-    for integrator in [IntegratorKind::Bdf2, IntegratorKind::ImplicitEuler, IntegratorKind::Verlet] {
+    for integrator in [IntegratorKind::Bdf2, IntegratorKind::ImplicitEuler, IntegratorKind::Verlet]
+    {
         let mut simulation = dropped(0.3, integrator);
         let mut least = energy(&simulation.certificate());
         let whole = least;
@@ -58,14 +59,19 @@ fn a_sheet_dropped_on_a_floor_comes_to_rest_within_two_seconds() {
 #[test]
 fn a_sheet_laid_on_a_floor_stays_at_rest() {
     for integrator in [IntegratorKind::Bdf2, IntegratorKind::ImplicitEuler] {
-        let cloth = placed(patch([12, 12], 0.4, SpringMaterial::default()), |x| x + 0.008 * Vector::z());
+        let cloth =
+            placed(patch([12, 12], 0.4, SpringMaterial::default()), |x| x + 0.008 * Vector::z());
         let cloths = vec![colliding(cloth, 0.008, 0.3)];
         let mut simulation = among(cloths, vec![floor(0.3)], settings(integrator));
         run(&mut simulation, 12);
         for _ in 0..36 {
             let certificate = simulation.advance().expect("a frame");
             let per_mass = certificate.kinetic_energy / mass(simulation.cloth(0));
-            assert!(per_mass < 1e-6, "{integrator:?}, frame {}: {per_mass} J/kg", certificate.frame);
+            assert!(
+                per_mass < 1e-6,
+                "{integrator:?}, frame {}: {per_mass} J/kg",
+                certificate.frame
+            );
         }
         // Where the ramped force of a contact carries the weight, within steps of a 48th of a second or less.
         let deepest = f64::sqrt(2.0 * 0.25 * 0.008 * 9.81 / (20.0 * 48.0 * 48.0));
@@ -79,9 +85,13 @@ fn a_sheet_laid_on_a_floor_stays_at_rest() {
 /// A sheet over a ball much smaller than itself sways longer: three seconds.
 #[test]
 fn a_sheet_on_a_ball_comes_to_rest() {
-    let cloth = placed(patch([16, 16], 0.5, SpringMaterial { damping: [0.02; 3], ..SpringMaterial::default() }), |x| x + 0.22 * Vector::z());
+    let cloth = placed(
+        patch([16, 16], 0.5, SpringMaterial { damping: [0.02; 3], ..SpringMaterial::default() }),
+        |x| x + 0.22 * Vector::z(),
+    );
     let cloths = vec![colliding(cloth, 0.008, 0.5)];
-    let mut simulation = among(cloths, vec![ball(Vector::zeros(), 0.2, 0.5)], settings(IntegratorKind::Bdf2));
+    let mut simulation =
+        among(cloths, vec![ball(Vector::zeros(), 0.2, 0.5)], settings(IntegratorKind::Bdf2));
     run(&mut simulation, 96);
     let per_mass = simulation.certificate().kinetic_energy / mass(simulation.cloth(0));
     assert!(per_mass < 1e-4, "{per_mass} J/kg");
@@ -118,7 +128,8 @@ fn meeting(integrator: IntegratorKind, step_size: StepSize, friction: f64) -> Si
 
 #[test]
 fn cloths_that_meet_without_gravity_keep_their_momentum() {
-    for integrator in [IntegratorKind::Bdf2, IntegratorKind::ImplicitEuler, IntegratorKind::Verlet] {
+    for integrator in [IntegratorKind::Bdf2, IntegratorKind::ImplicitEuler, IntegratorKind::Verlet]
+    {
         let mut simulation = meeting(integrator, StepSize::Auto, 0.3);
         let [before, _] = momenta(&simulation);
         let speed = 2.0 * mass(simulation.cloth(1));
@@ -128,7 +139,11 @@ fn cloths_that_meet_without_gravity_keep_their_momentum() {
             most = most.max(f64::from(certificate.contacts));
             let lost = (momenta(&simulation)[0] - before).norm() / speed;
             let frame = certificate.frame;
-            assert!(lost < 1e-6, "{integrator:?}, frame {frame}: {lost:e} of the momentum, {} clipped", certificate.clipped);
+            assert!(
+                lost < 1e-6,
+                "{integrator:?}, frame {frame}: {lost:e} of the momentum, {} clipped",
+                certificate.clipped
+            );
         }
         assert!(most > 50.0, "{integrator:?}: they do not meet");
         let bounced = simulation.velocities(1).iter().map(|v| v.z).sum::<f64>() / 81.0;

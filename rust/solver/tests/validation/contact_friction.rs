@@ -22,8 +22,7 @@ fn lying(
 ) -> Simulation {
     // Turned about y, from z to the normal.
     let along = Vector::new(normal.z, 0.0, -normal.x);
-    let place =
-        |x: &Vector| along * x.x + Vector::y() * x.y + normal * (x.z + THICKNESS);
+    let place = |x: &Vector| along * x.x + Vector::y() * x.y + normal * (x.z + THICKNESS);
     let cloth = placed(patch([8, 8], 0.25, SpringMaterial::default()), place);
     let cloth = colliding(cloth, THICKNESS, frictions[0]);
     let slope = Collider { friction: frictions[1], ..plane(normal, 0.0) };
@@ -49,7 +48,8 @@ fn gone(mut simulation: Simulation, along: Vector) -> [f64; 2] {
 /// Implicit Euler goes `a t (t + h)/2`: up to 1/48 more than the half of `a t²` that BDF2 goes.
 #[test]
 fn a_patch_on_a_slope_of_35_degrees_slides_with_coulombs_acceleration() {
-    for (integrator, late) in [(IntegratorKind::Bdf2, 0.0), (IntegratorKind::ImplicitEuler, 1.0 / 48.0)]
+    for (integrator, late) in
+        [(IntegratorKind::Bdf2, 0.0), (IntegratorKind::ImplicitEuler, 1.0 / 48.0)]
     {
         let simulation = on_a_slope(35.0, [0.5, 0.5], integrator);
         let [way, speed] = gone(simulation, Vector::x());

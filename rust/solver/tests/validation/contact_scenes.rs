@@ -2,7 +2,9 @@
 //! longer than its deformation rate allows.
 
 use boucle_geometry::{Mesh, Vector};
-use boucle_solver::{Cloth, Collider, IntegratorKind, Mass, Settings, Shape, Simulation, SpringMaterial};
+use boucle_solver::{
+    Cloth, Collider, IntegratorKind, Mass, Settings, Shape, Simulation, SpringMaterial,
+};
 use nalgebra::Rotation3;
 
 use crate::contact_things::{
@@ -29,7 +31,12 @@ fn sheet(side: u32, width: f64, middle: Vector, bend: f64) -> Cloth {
 
 /// Runs so many sound frames, before each of which `act` may move things; something must have touched.
 #[track_caller]
-fn is_sound(what: &str, mut simulation: Simulation, frames: u32, act: impl Fn(&mut Simulation)) -> Simulation {
+fn is_sound(
+    what: &str,
+    mut simulation: Simulation,
+    frames: u32,
+    act: impl Fn(&mut Simulation),
+) -> Simulation {
     assert_eq!(simulation.certificate().intersections, Some(0), "{what}: at the start");
     let mut contacts = 0;
     for _ in 0..frames {
@@ -54,7 +61,11 @@ fn carry(simulation: &mut Simulation, number: usize, way: &Vector) {
 fn a_sheet_drops_on_a_ball_and_on_a_floor_without_intersections_by_every_rule() {
     for integrator in IntegratorKind::ALL {
         // Forward Euler and midpoint need damping to be stable at all.
-        let material = SpringMaterial { damping: [0.05, 0.02, 0.01], stiffness: [100.0, 20.0, 1.0], ..SpringMaterial::default() };
+        let material = SpringMaterial {
+            damping: [0.05, 0.02, 0.01],
+            stiffness: [100.0, 20.0, 1.0],
+            ..SpringMaterial::default()
+        };
         for (what, obstacle, height) in
             [("ball", ball(Vector::zeros(), 0.2, 0.3), 0.23), ("floor", floor(0.3), 0.04)]
         {
@@ -127,7 +138,8 @@ fn a_strip_that_falls_end_on_folds_into_a_stack() {
 #[test]
 fn a_sheet_falls_on_another() {
     let turn = Rotation3::from_axis_angle(&Vector::z_axis(), std::f64::consts::FRAC_PI_4);
-    let lower = Cloth { pins: vec![0, 21, 21 * 22, 22 * 22 - 1], ..sheet(22, 1.4, Vector::zeros(), 5.0) };
+    let lower =
+        Cloth { pins: vec![0, 21, 21 * 22, 22 * 22 - 1], ..sheet(22, 1.4, Vector::zeros(), 5.0) };
     let upper = placed(sheet(16, 1.0, Vector::zeros(), 5.0), |x| turn * x + 0.15 * Vector::z());
     is_sound("two sheets", among(vec![lower, upper], Vec::new(), bdf2()), 24, nothing);
 }
@@ -141,16 +153,19 @@ fn a_tube_is_twisted_like_a_rope() {
     let top = (rows - 1) * sides;
     let pins: Vec<u32> = (0..sides).chain(top..top + sides).collect();
     let mass = Mass::Density(0.2);
-    let tube = Cloth::from_mesh("tube", mesh, positions.clone(), &mass, springs(1.0), pins).expect("a tube");
+    let tube = Cloth::from_mesh("tube", mesh, positions.clone(), &mass, springs(1.0), pins)
+        .expect("a tube");
     let tube = colliding(tube, 0.008, 0.3);
     let weightless = Settings { gravity: Vector::zeros(), ..bdf2() };
     is_sound("twist", among(vec![tube], Vec::new(), weightless), 24, |simulation| {
         let turns = f64::from(simulation.frame());
         let turn = Rotation3::from_axis_angle(&Vector::z_axis(), (30.0 * turns).to_radians());
         let nearer = -0.01 * turns * Vector::z();
-        let targets: Vec<Vector> = positions.iter().enumerate().map(|(i, x)| {
-            if i as u32 >= top { turn * x + nearer } else { *x }
-        }).collect();
+        let targets: Vec<Vector> = positions
+            .iter()
+            .enumerate()
+            .map(|(i, x)| if i as u32 >= top { turn * x + nearer } else { *x })
+            .collect();
         simulation.set_pin_targets(0, &targets);
     });
 }
@@ -187,8 +202,8 @@ fn two_plates_close_on_a_sheet_that_lies_askew() {
     let cloth = placed(patch([20, 20], 1.0, springs(5.0)), |x| askew * x + 0.12 * Vector::z());
     let cloth = colliding(cloth, 0.01, 0.3);
     let size = Vector::new(1.4, 1.4, 0.1);
-    let plates = [-0.05, 0.35]
-        .map(|z| collider(Shape::cuboid(), corners(z * Vector::z(), size), 0.3));
+    let plates =
+        [-0.05, 0.35].map(|z| collider(Shape::cuboid(), corners(z * Vector::z(), size), 0.3));
     is_sound("plates", among(vec![cloth], plates.to_vec(), bdf2()), 30, |simulation| {
         let frame = f64::from(simulation.frame());
         let closed = (frame / 15.0).min((30.0 - frame) / 10.0).clamp(0.0, 1.0);
@@ -244,8 +259,10 @@ fn a_sheet_falls_on_a_body_that_moves_and_deforms() {
         let seconds = f64::from(simulation.frame()) / 24.0;
         let breath = 1.0 + 0.15 * (std::f64::consts::TAU * seconds).sin();
         let lean = 0.5 * (std::f64::consts::PI * seconds).sin();
-        let targets: Vec<Vector> =
-            positions.iter().map(|x| Vector::new(x.x * breath + lean * x.z, x.y * breath, x.z)).collect();
+        let targets: Vec<Vector> = positions
+            .iter()
+            .map(|x| Vector::new(x.x * breath + lean * x.z, x.y * breath, x.z))
+            .collect();
         simulation.set_collider_targets(0, &targets).expect("as many targets");
     });
 }

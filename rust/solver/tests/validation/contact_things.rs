@@ -66,14 +66,22 @@ pub(crate) fn lathe(sides: u32, profile: &[[f64; 2]]) -> (Mesh, Vec<Vector>) {
     };
     let positions: Vec<Vector> = profile.iter().flat_map(ring).collect();
     let faces: Vec<[u32; 4]> = (0..profile.len() as u32 - 1)
-        .flat_map(|row| (0..sides).map(move |side| [row, row + 1].map(|row| [row * sides + side, row * sides + (side + 1) % sides])))
+        .flat_map(|row| {
+            (0..sides).map(move |side| {
+                [row, row + 1].map(|row| [row * sides + side, row * sides + (side + 1) % sides])
+            })
+        })
         .map(|[[a, b], [c, d]]| [a, b, d, c])
         .collect();
     (Mesh::from_faces(positions.len(), &faces).expect("rings"), positions)
 }
 
 /// A simulation among colliders.
-pub(crate) fn among(cloths: Vec<Cloth>, colliders: Vec<Collider>, settings: Settings) -> Simulation {
+pub(crate) fn among(
+    cloths: Vec<Cloth>,
+    colliders: Vec<Collider>,
+    settings: Settings,
+) -> Simulation {
     Simulation::with_colliders(cloths, colliders, Vec::new(), settings).expect("a simulation")
 }
 

@@ -4,7 +4,6 @@
 //! comes from. The tables in `reference/` were computed independently, with numpy.
 
 mod conservation;
-mod contact_debug;
 mod contact_determinism;
 mod contact_energy;
 mod contact_friction;

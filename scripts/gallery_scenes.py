@@ -119,7 +119,7 @@ EXHIBITS = (
     ),
     Exhibit(
         "incline",
-        "Friction 0.5 on 35°: it slides as Coulomb says",
+        "A patch that slides down 35° at friction 0.5",
         20,
         View(center=(0.15, 0.0, -0.1), width=1.9, height=1.425, turn=20.0, lift=16.0),
         grid("patch", 32, 0.004, "cloth.patch.grid.center=[0,0,0.004]"),

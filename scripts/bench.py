@@ -77,6 +77,7 @@ def verdict(text: str, is_met: bool) -> str:
 def main(words: list[str]) -> int:
     """Run the benchmarks that `words` names."""
     import bench_bridge
+    import bench_contact
     import bench_explicit
     import bench_solver
 
@@ -84,6 +85,7 @@ def main(words: list[str]) -> int:
         "explicit": bench_explicit.bench,
         "bridge": bench_bridge.bench,
         "solver": bench_solver.bench,
+        "contact": bench_contact.bench,
     }
     names = list(entries) if words == ["all"] else words
     unknown = [name for name in names if name not in entries]

@@ -62,4 +62,4 @@ def peak_memory() -> int:
 
 def tell(result: dict[str, Any]) -> None:
     """Print the result for the process that asked."""
-    print(MARK + json.dumps({**result, "peak_bytes": peak_memory()}), flush=True)
+    print(MARK + json.dumps({"peak_bytes": peak_memory(), **result}), flush=True)

@@ -19,7 +19,6 @@ use boucle_geometry::distance::Closest;
 use super::bodies::Bodies;
 use super::candidate::Candidate;
 use super::paths::Paths;
-use crate::state::Coordinates;
 
 /// Stiffness of a contact, in units of m/h².
 const STIFFNESS: f64 = 20.0;
@@ -55,8 +54,6 @@ pub(super) struct Contact {
     stiffness: f64,
     /// Mass that it feels over h'² (N/m).
     pub(super) inertia: f64,
-    /// How far (m/N) a force on each point moves the contact: weight times h'² over mass.
-    yields: [f64; 4],
     pub(super) friction: f64,
 }
 
@@ -130,7 +127,6 @@ impl Near {
             reach,
             stiffness: 0.0,
             inertia: 1.0,
-            yields: [0.0; 4],
             friction: (one * other).sqrt(),
         })
     }
@@ -152,7 +148,6 @@ impl Contact {
             reach: way,
             stiffness: 0.0,
             inertia: 1.0,
-            yields: [0.0; 4],
             friction: 0.0,
         }
     }
@@ -178,18 +173,16 @@ impl Contact {
             reach,
             stiffness: 0.0,
             inertia: 1.0,
-            yields: [0.0; 4],
             friction,
         })
     }
 
     /// Takes its stiffness from the masses that it feels, for a step of h' seconds.
     pub(super) fn stiffen(&mut self, inverse_masses: &[f64], h: f64) {
-        self.yields = std::array::from_fn(|i| {
-            let inverse = inverse_masses.get(self.points[i] as usize).copied().unwrap_or(0.0);
-            self.weights[i] * inverse * h * h
+        let shares = self.points.iter().zip(&self.weights).map(|(&point, weight)| {
+            inverse_masses.get(point as usize).map_or(0.0, |inverse| inverse * weight * weight)
         });
-        let softness: f64 = self.yields.iter().zip(&self.weights).map(|(a, b)| a * b).sum();
+        let softness = shares.sum::<f64>() * h * h;
         if softness == 0.0 {
             (self.inertia, self.stiffness) = (1.0, 0.0);
             return;
@@ -199,13 +192,6 @@ impl Contact {
         let closeness = (near * near).clamp(1.0, STIFFEST);
         self.inertia = 1.0 / softness;
         self.stiffness = STIFFNESS * closeness * self.inertia;
-    }
-
-    /// How far (m) the forces (N) that are left at its points would move it.
-    #[inline]
-    pub(super) fn imbalance(&self, left: &Coordinates) -> Vector {
-        let ends = self.points.iter().zip(&self.yields).filter(|end| *end.1 != 0.0);
-        ends.map(|(&point, yields)| *yields * left.get(point as usize)).sum()
     }
 
     /// Gap (m) where the points are `moved` (m) from their starts, summed by weights.
@@ -244,12 +230,13 @@ impl Contact {
         }
     }
 
-    /// Force (N) and slope (N/m) at a gap (m) for Newton's method, where the gap would be another (m) without the contact:
-    /// those of the tangent at the depth at which it would rest by itself. From the far side of the ramp Newton's own
-    /// tangent leads there in halves only.
+    /// Force (N) and slope (N/m) at a gap (m) for Newton's method, where the last iteration left a force (N): those of the
+    /// tangent at the depth at which the contact would rest by itself. From the far side of the ramp Newton's own tangent
+    /// leads there in halves only.
     #[inline]
-    pub(super) fn tangent(&self, gap: f64, gap_alone: f64) -> [f64; 2] {
-        let (depth, free) = (self.reach - gap, self.reach - gap_alone);
+    pub(super) fn tangent(&self, gap: f64, last: f64) -> [f64; 2] {
+        let depth = self.reach - gap;
+        let free = depth + last / self.inertia;
         if free <= 0.0 || self.stiffness == 0.0 {
             return [0.0, 0.0];
         }

@@ -7,15 +7,7 @@
 //! ```
 //!
 //! The slope of F is continuous; a cloth at rest creeps by less than e a step. Newton's iterations take f from the last
-//! and c as a constant, so that each is linear and positive. With the c of the last slip they would meet slowly: a
-//! slip that begins without friction falls by a part only in each. So c is that of the slip which the contact would have by
-//! itself, with the mass m that it feels:
-//!
-//! ```text
-//! a = m/h'²        u^ = |u| (1 + c_last/a)        u* = max(0, u^ - mu f/a)
-//! ```
-//!
-//! u^ is the slip without friction; where all have met, u* is |u|.
+//! and c as a constant, so that each is linear and positive.
 //!
 //! Source: Li et al. 2020 for the smooth law; Alart & Curnier 1991 for lagging.
 

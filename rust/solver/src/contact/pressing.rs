@@ -1,14 +1,14 @@
 //! What contacts press and rub at a guess of Newton's method.
 //!
 //! The force of a contact is far from linear over the way of a step: it sets in, and friction slides or sticks. So each
-//! contact takes its tangent where it would come to rest by itself, with the mass m that it feels. If all other forces
-//! leave r (N) at its points, and its own last force was F (N), it would without it go
+//! contact takes its tangent where it would come to rest by itself, with the mass m that it feels: it has a depth p and a
+//! slip u (m), and its last force was f (N),
 //!
 //! ```text
-//! a = m/h'²        sum_i w_i r_i h'²/m_i - F/a
+//! a = m/h'²        free depth p + f/a        slip with friction |u| - mu f/a, after an iteration without
 //! ```
 //!
-//! farther than it is now. Where all have met, nothing is left, and the tangent is that of the law.
+//! Later iterations take friction at the slip that they find. Where all have met, the tangent is that of the law.
 
 use boucle_geometry::Vector;
 use rayon::prelude::*;
@@ -42,31 +42,15 @@ impl Contacts {
     /// Adds the forces (N) of contacts at these positions (m) to those of everything else, and freezes their tangents, in a
     /// step of h seconds. Friction takes the pressure that the last solution found.
     pub(crate) fn push(&mut self, at: &Coordinates, residual: &mut Coordinates, h: f64) {
-        let ways: Vec<Way> = self.near.par_iter().map(|contact| self.way_of(contact, at)).collect();
-        let last: Vec<Vector> = self
-            .near
-            .par_iter()
-            .zip(&self.pressures)
-            .zip(&ways)
-            .map(|((contact, pressure), way)| {
-                contact.normal * pressure.force - pressure.resistance * way.slip
-            })
-            .collect();
-        self.matrix.add_forces(&last, residual);
-        let left = &*residual;
-        let pressed = self.near.par_iter().zip(&self.pressures).zip(&ways).zip(&last);
-        let pressed: Vec<(Pressure, Vector)> = pressed
-            .map(|(((contact, pressure), way), last)| {
-                let alone = contact.imbalance(left) - last / contact.inertia;
-                let pressure = pressure.renewed(contact, way, &alone, h);
-                let force = contact.normal * pressure.force - pressure.resistance * way.slip;
-                (pressure, force - last)
-            })
-            .collect();
-        let (pressures, changes): (Vec<_>, Vec<_>) = pressed.into_iter().unzip();
+        let pressed = self.near.par_iter().zip(&self.pressures).map(|(contact, pressure)| {
+            let way = self.way_of(contact, at);
+            let pressure = pressure.renewed(contact, &way, h);
+            (pressure, contact.normal * pressure.force - pressure.resistance * way.slip)
+        });
+        let (pressures, forces): (Vec<_>, Vec<_>) = pressed.unzip();
         self.pressures = pressures;
         self.matrix.set(self.pressures.iter().map(|own| [own.slope, own.resistance]));
-        self.matrix.add_forces(&changes, residual);
+        self.matrix.add_forces(&forces, residual);
     }
 
     fn way_of(&self, contact: &Contact, at: &Coordinates) -> Way {
@@ -102,16 +86,18 @@ impl Contacts {
 }
 
 impl Pressure {
-    /// The same at a new guess, where the contact would go `alone` (m) without its own last force.
-    fn renewed(&self, contact: &Contact, way: &Way, alone: &Vector, h: f64) -> Self {
-        let normal = &contact.normal;
-        let along = normal.dot(alone);
-        let slipped = (way.slip + alone - normal * along).norm();
+    /// The same at a new guess.
+    fn renewed(&self, contact: &Contact, way: &Way, h: f64) -> Self {
         let strength = contact.friction * self.force;
-        let slipping = (slipped - strength / contact.inertia).max(0.0);
+        let slip = way.slip.norm();
+        let slipping = if self.resistance == 0.0 {
+            (slip - strength / contact.inertia).max(0.0)
+        } else {
+            slip
+        };
         let most = friction::FIRMEST * contact.inertia;
         let resistance = friction::resistance(strength, slipping, h).min(most);
-        let [force, slope] = contact.tangent(way.gap, way.gap + along);
+        let [force, slope] = contact.tangent(way.gap, self.force);
         Self { force, slope, resistance }
     }
 }

@@ -17,6 +17,9 @@ use crate::material::SpringMaterial;
 use crate::scatter::scattered;
 use crate::state::State;
 
+/// Where a step is expected to lead from some positions.
+type Expected<'a> = &'a dyn Fn(&[Vector]) -> Vec<Vector>;
+
 /// A vector with numbers in -1 to 1 that look random and are always the same.
 fn random(index: usize) -> Vector {
     Vector::from_fn(|axis, _| scattered(3 * index as u64 + axis as u64))
@@ -489,8 +492,7 @@ fn truncated_ways_lead_through_nothing_by_brute_force() {
                 // As expected, a little off it, and not expected at all.
                 let little = |starts: &[Vector]| moved(&wanted(starts), 0.002, 5);
                 let still = |starts: &[Vector]| starts.to_vec();
-                let expectations: [&dyn Fn(&[Vector]) -> Vec<Vector>; 3] =
-                    [&wanted, &little, &still];
+                let expectations: [Expected<'_>; 3] = [&wanted, &little, &still];
                 for (number, expected) in expectations.iter().enumerate() {
                     let (contacts, clipped, [starts, _, ends]) =
                         truncated(&cloths, expected, wanted);

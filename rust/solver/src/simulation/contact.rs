@@ -26,7 +26,7 @@ impl Simulation {
     /// rest there until they are told anew.
     ///
     /// # Errors
-    /// [`Error::BadCollider`] when there are not as many as it has, or one is no place in space.
+    /// [`Error::BadCollider`](crate::Error::BadCollider) when there are not as many as it has, or one is no place in space.
     pub fn set_collider_targets(&mut self, collider: usize, targets: &[Vector]) -> Result<()> {
         self.colliders[collider].check_positions(targets)?;
         let before = self.colliders[..collider].iter().map(|collider| collider.positions.len());

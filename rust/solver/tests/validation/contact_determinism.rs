@@ -42,8 +42,10 @@ fn advance(simulation: &mut Simulation) -> Certificate {
     simulation.advance().expect("a frame")
 }
 
-const SCENES: [(&str, fn(IntegratorKind, usize) -> Simulation); 2] =
-    [("sheet on ball", sheet_on_ball), ("two sheets", two_sheets)];
+/// A scene on so many threads.
+type Scene = fn(IntegratorKind, usize) -> Simulation;
+
+const SCENES: [(&str, Scene); 2] = [("sheet on ball", sheet_on_ball), ("two sheets", two_sheets)];
 
 fn velocity_bits(simulation: &Simulation) -> Vec<u64> {
     (0..simulation.cloth_count())

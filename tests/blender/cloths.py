@@ -33,6 +33,7 @@ def add_diverging_cloth():
         substeps=1,
         allow_unstable=True,
         damping=0.0,
+        self_collision=False,
     )
 
 

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 from mathutils import Euler, Matrix, Vector
 
-from .studio import Studio, matt_material, silence
+from .studio import Studio, matt_material
 
 if TYPE_CHECKING:
     from gallery_scenes import Exhibit
@@ -50,14 +50,7 @@ class GalleryStudio(Studio):
         for collider in description.get("collider", []):
             material = self.clear if collider["name"] in exhibit.clear else self.stone
             made.append(self.build_collider(collider, exhibit, scene.parent, material))
-        render, view = self.scene.render, exhibit.view
-        render.resolution_x = width
-        render.resolution_y = round(width * view.height / view.width)
-        render.filepath = str(path.resolve())
-        with silence():
-            bpy.ops.render.render(write_still=True)
-        for thing in made:
-            bpy.data.meshes.remove(thing.data)
+        self.photograph(made, exhibit.view, width, path)
 
     def build(self, positions: Any, faces: list[list[int]], material: Any) -> bpy.types.Object:
         """A smooth mesh in the scene."""

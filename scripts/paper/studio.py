@@ -82,6 +82,10 @@ class Studio:
         scale = max(view.width, view.height)
         made = [self.build_cloth(shot), self.build_threads(shot, THREAD * scale)]
         made += [self.build_pin(shot.positions[pin], PIN * scale) for pin in shot.pins]
+        self.photograph(made, view, width, path)
+
+    def photograph(self, made: list[bpy.types.Object], view: View, width: int, path: Path) -> None:
+        """Render what is built into a PNG file, `width` pixels wide, and take it away."""
         render = self.scene.render
         render.resolution_x = width
         render.resolution_y = round(width * view.height / view.width)

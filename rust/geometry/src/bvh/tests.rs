@@ -2,20 +2,7 @@
 
 use super::{Bvh, Sweep};
 use crate::Vector;
-
-/// Numbers between 0 and 1 that look random (Knuth's generator).
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn vector(&mut self, size: f64) -> Vector {
-        Vector::from_fn(|_, _| size * (self.next() - 0.5))
-    }
-}
+use crate::scatter::Scatter;
 
 /// Balls that move.
 struct Balls {
@@ -26,10 +13,10 @@ struct Balls {
 
 impl Balls {
     fn new(count: usize, seed: u64, speed: f64) -> Self {
-        let mut numbers = Numbers(seed);
-        let middles = (0..count).map(|_| numbers.vector(1.0)).collect();
+        let mut scatter = Scatter(seed);
+        let middles = (0..count).map(|_| 0.5 * scatter.point()).collect();
         let common = Vector::new(3.0, -2.0, 1.0);
-        let moves = (0..count).map(|_| common + numbers.vector(speed)).collect();
+        let moves = (0..count).map(|_| common + 0.5 * speed * scatter.point()).collect();
         Self { middles, moves, radius: 0.03 }
     }
 

@@ -45,6 +45,9 @@ use pressing::Pressure;
 use recovery::Tangle;
 pub(crate) use response::Response;
 
+/// The longest way (m) that colliders and cloth may go towards each other before they meet contacts again.
+pub(crate) const LONGEST_WAY: f64 = 0.15;
+
 /// Everything that touches, and how.
 #[derive(Debug)]
 pub(crate) struct Contacts {
@@ -62,9 +65,8 @@ pub(crate) struct Contacts {
     /// Candidates that may meet on ways near those that were expected, and those ways (m).
     watched: Vec<Candidate>,
     expected: Vec<Vector>,
-    /// Whether the present ways are free of intersections, and scratch to remember them (m).
+    /// Whether the present ways are free of intersections.
     is_safe: bool,
-    safe: Vec<Vector>,
     pub(crate) matrix: ContactMatrix,
     /// What each contact does at the present guess.
     pressures: Vec<Pressure>,
@@ -87,7 +89,6 @@ impl Contacts {
             watched: Vec::new(),
             expected: vec![Vector::zeros(); bodies.rest.len()],
             is_safe: false,
-            safe: Vec::new(),
             matrix: ContactMatrix::default(),
             pressures: Vec::new(),
             clipped: 0,

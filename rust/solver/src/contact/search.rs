@@ -1,8 +1,10 @@
 //! Which features may meet: points with triangles, edges with edges.
 
+use boucle_geometry::Bvh;
+
 use super::bodies::{Bodies, Body};
 use super::candidate::Candidate;
-use super::features::{Edge, Triangle};
+use super::features::{Edge, Features, Triangle};
 use super::{Contacts, Trees};
 
 impl Contacts {
@@ -73,38 +75,45 @@ impl<V> Search<'_, V> {
         }
     }
 
+    /// The pairs of items of two hierarchies; of those of which the first is marked by what has changed, if it is said.
+    fn between<T: Send>(
+        &self,
+        [first, second]: [&Bvh; 2],
+        is_marked: impl Fn(u32, &[bool]) -> bool + Sync,
+        visit: impl Fn(u32, u32, &mut Vec<T>) + Sync,
+    ) -> Vec<T> {
+        match self.is_changed {
+            None => first.pairs_with(second, visit),
+            Some(is_changed) => {
+                first.pairs_of_marked_with(|item| is_marked(item, is_changed), second, visit)
+            }
+        }
+    }
+
     fn points_and_triangles_of_cloths<T: Send>(&self) -> Vec<T>
     where
         V: Fn(Candidate, &mut Vec<T>) + Sync,
     {
-        let features = &self.bodies.cloths;
-        let (points, triangles) = (&self.cloths.points, &self.cloths.triangles);
-        let Some(is_changed) = self.is_changed else {
-            return points.pairs_with(triangles, |point, triangle, found| {
-                let triangle = &features.triangles[triangle as usize];
-                self.point_triangle(features.points[point as usize], triangle, found);
-            });
+        let Features { points, triangles, .. } = &self.bodies.cloths;
+        let [by_point, by_triangle] = [&self.cloths.points, &self.cloths.triangles];
+        let point_of = |item: u32| points[item as usize];
+        let visit = |point: u32, triangle: u32, found: &mut Vec<T>| {
+            self.point_triangle(point_of(point), &triangles[triangle as usize], found);
         };
-        let is_point_marked = |item: u32| is_changed[features.points[item as usize] as usize];
-        let is_triangle_marked = |item: u32| {
-            let points = features.triangles[item as usize].points;
-            points.iter().any(|&point| is_changed[point as usize])
-        };
-        let mut found =
-            points.pairs_of_marked_with(is_point_marked, triangles, |point, triangle, found| {
-                let triangle = &features.triangles[triangle as usize];
-                self.point_triangle(features.points[point as usize], triangle, found);
-            });
-        found.extend(triangles.pairs_of_marked_with(
-            is_triangle_marked,
-            points,
-            |triangle, point, found| {
-                if !is_point_marked(point) {
-                    let triangle = &features.triangles[triangle as usize];
-                    self.point_triangle(features.points[point as usize], triangle, found);
-                }
-            },
-        ));
+        let is_point_marked = |item: u32, is_changed: &[bool]| is_changed[point_of(item) as usize];
+        let mut found = self.between([by_point, by_triangle], is_point_marked, visit);
+        // Changed triangles meet points that have not changed, too.
+        if let Some(is_changed) = self.is_changed {
+            found.extend(by_triangle.pairs_of_marked_with(
+                |item| is_marked(&triangles[item as usize].points, is_changed),
+                by_point,
+                |triangle, point, found| {
+                    if !is_point_marked(point, is_changed) {
+                        visit(point, triangle, found);
+                    }
+                },
+            ));
+        }
         found
     }
 
@@ -121,7 +130,7 @@ impl<V> Search<'_, V> {
             Some(is_changed) => self
                 .cloths
                 .edges
-                .pairs_of_marked(|item| is_marked(&edges[item as usize], is_changed), visit),
+                .pairs_of_marked(|item| is_marked(&edges[item as usize].points, is_changed), visit),
         }
     }
 
@@ -130,18 +139,14 @@ impl<V> Search<'_, V> {
         V: Fn(Candidate, &mut Vec<T>) + Sync,
     {
         let Bodies { cloths, colliders, .. } = self.bodies;
-        let visit = |point: u32, triangle: u32, found: &mut Vec<T>| {
-            let triangle = &colliders.triangles[triangle as usize];
-            self.point_triangle(cloths.points[point as usize], triangle, found);
-        };
-        let (points, triangles) = (&self.cloths.points, &self.colliders.triangles);
-        match self.is_changed {
-            None => points.pairs_with(triangles, visit),
-            Some(is_changed) => {
-                let is_marked = |item: u32| is_changed[cloths.points[item as usize] as usize];
-                points.pairs_of_marked_with(is_marked, triangles, visit)
-            }
-        }
+        self.between(
+            [&self.cloths.points, &self.colliders.triangles],
+            |item, is_changed| is_changed[cloths.points[item as usize] as usize],
+            |point, triangle, found| {
+                let triangle = &colliders.triangles[triangle as usize];
+                self.point_triangle(cloths.points[point as usize], triangle, found);
+            },
+        )
     }
 
     fn triangles_of_cloths_and_points_of_colliders<T: Send>(&self) -> Vec<T>
@@ -149,21 +154,14 @@ impl<V> Search<'_, V> {
         V: Fn(Candidate, &mut Vec<T>) + Sync,
     {
         let Bodies { cloths, colliders, .. } = self.bodies;
-        let visit = |triangle: u32, point: u32, found: &mut Vec<T>| {
-            let triangle = &cloths.triangles[triangle as usize];
-            self.point_triangle(colliders.points[point as usize], triangle, found);
-        };
-        let (triangles, points) = (&self.cloths.triangles, &self.colliders.points);
-        match self.is_changed {
-            None => triangles.pairs_with(points, visit),
-            Some(is_changed) => {
-                let is_marked = |item: u32| {
-                    let points = cloths.triangles[item as usize].points;
-                    points.iter().any(|&point| is_changed[point as usize])
-                };
-                triangles.pairs_of_marked_with(is_marked, points, visit)
-            }
-        }
+        self.between(
+            [&self.cloths.triangles, &self.colliders.points],
+            |item, is_changed| is_marked(&cloths.triangles[item as usize].points, is_changed),
+            |triangle, point, found| {
+                let triangle = &cloths.triangles[triangle as usize];
+                self.point_triangle(colliders.points[point as usize], triangle, found);
+            },
+        )
     }
 
     fn edges_of_cloths_and_colliders<T: Send>(&self) -> Vec<T>
@@ -171,23 +169,17 @@ impl<V> Search<'_, V> {
         V: Fn(Candidate, &mut Vec<T>) + Sync,
     {
         let Bodies { cloths, colliders, .. } = self.bodies;
-        let visit = |first: u32, second: u32, found: &mut Vec<T>| {
-            let (first, second) =
-                (&cloths.edges[first as usize], &colliders.edges[second as usize]);
-            self.edge_edge(first, second, found);
-        };
-        let (edges, others) = (&self.cloths.edges, &self.colliders.edges);
-        match self.is_changed {
-            None => edges.pairs_with(others, visit),
-            Some(is_changed) => edges.pairs_of_marked_with(
-                |item| is_marked(&cloths.edges[item as usize], is_changed),
-                others,
-                visit,
-            ),
-        }
+        self.between(
+            [&self.cloths.edges, &self.colliders.edges],
+            |item, is_changed| is_marked(&cloths.edges[item as usize].points, is_changed),
+            |first, second, found| {
+                let second = &colliders.edges[second as usize];
+                self.edge_edge(&cloths.edges[first as usize], second, found);
+            },
+        )
     }
 }
 
-fn is_marked(edge: &Edge, is_changed: &[bool]) -> bool {
-    edge.points.iter().any(|&point| is_changed[point as usize])
+fn is_marked(points: &[u32], is_changed: &[bool]) -> bool {
+    points.iter().any(|&point| is_changed[point as usize])
 }

@@ -24,9 +24,8 @@ impl Contacts {
         inverse_masses: &[f64],
         h: f64,
     ) {
-        let way = |particle: u32| self.way(positions, particle) / h;
         self.change(velocities, inverse_masses, h, |contact, speed| {
-            (speed - self.along(contact, h, way)).max(0.0)
+            (speed - self.along_way(contact, h, positions)).max(0.0)
         });
     }
 
@@ -39,9 +38,8 @@ impl Contacts {
         inverse_masses: &[f64],
         h: f64,
     ) {
-        let way = |particle: u32| self.way(positions, particle) / h;
         self.change(velocities, inverse_masses, h, |contact, speed| {
-            speed - self.along(contact, h, way)
+            speed - self.along_way(contact, h, positions)
         });
     }
 
@@ -59,8 +57,11 @@ impl Contacts {
         });
     }
 
-    fn way(&self, positions: &Coordinates, particle: u32) -> Vector {
-        positions.get(particle as usize) - self.origins[particle as usize]
+    /// How fast (m/s) a contact has opened on the way to these positions (m).
+    fn along_way(&self, contact: &Contact, h: f64, positions: &Coordinates) -> f64 {
+        self.along(contact, h, |particle| {
+            (positions.get(particle as usize) - self.origins[particle as usize]) / h
+        })
     }
 
     /// How fast (m/s) a contact opens if particles have these velocities.

@@ -38,8 +38,7 @@ struct Cutting {
 impl Contacts {
     /// Cuts the ways to these positions (m) short where they would lead through anything, and returns how many were.
     pub(crate) fn truncate(&mut self, ends: &mut Coordinates) -> u32 {
-        let mut safe = std::mem::take(&mut self.safe);
-        safe.clone_from(&self.paths.step);
+        let safe = self.paths.step.clone();
         self.paths.set_ends(ends);
         let count = self.bodies.particle_count;
         let changes = self.paths.step[..count].iter().zip(&safe);
@@ -49,7 +48,6 @@ impl Contacts {
             is_stopped: vec![false; count],
             is_changed: changes.map(|(step, safe)| !self.is_safe || step != safe).collect(),
         };
-        self.safe = safe;
         if cutting.is_changed.contains(&true) {
             self.stay_before_planes(&mut cutting);
             for round in 0..ROUNDS {

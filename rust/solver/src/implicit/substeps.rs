@@ -11,6 +11,8 @@
 //! of the step factors the matrix anew. A pin that is to change its velocity has an error before the frame begins. A frame
 //! in which cloth snaps taut shows it only at its end: if it should have had twice as many steps, it is done once more.
 
+use crate::contact::LONGEST_WAY;
+
 /// The numbers of steps that are taken.
 const COUNTS: [u32; 10] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48];
 
@@ -38,9 +40,6 @@ const MOST_IN_CONTACT: u32 = 6;
 
 /// The fewest: what slides and stops is then right within a percent.
 const LEAST_IN_CONTACT: u32 = 4;
-
-/// The longest way (m) that colliders and cloth go towards each other in a step.
-const LONGEST_WAY: f64 = 0.15;
 
 /// What the choice depends on.
 #[derive(Clone, Copy, Debug)]

@@ -5,6 +5,7 @@ use boucle_geometry::Vector;
 use super::Simulation;
 use crate::certificate::length;
 use crate::cloth::Cloth;
+use crate::contact::LONGEST_WAY;
 use crate::error::{Error, Result};
 use crate::implicit::Accuracy;
 use crate::integrator::explicit;
@@ -112,10 +113,8 @@ impl Simulation {
     }
 }
 
-/// Parts of a frame after which explicit steps meet contacts, at the least, and the longest way (m) that colliders and
-/// cloth go towards each other in one.
+/// Parts of a frame after which explicit steps meet contacts, at the least.
 const MEETINGS: f64 = 24.0;
-const LONGEST_WAY: f64 = 0.15;
 
 /// After how many steps contacts are met, if colliders and cloth go so far (m) towards each other over a frame.
 pub(super) fn stride(method: &Method, way: f64, substeps: u32) -> u32 {

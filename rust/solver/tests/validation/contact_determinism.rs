@@ -4,6 +4,7 @@ use boucle_geometry::Vector;
 use boucle_solver::{Certificate, Collider, IntegratorKind, Settings, Simulation, SpringMaterial};
 
 use crate::contact_things::{among, ball, colliding, corners, patch, placed};
+use crate::determinism::velocity_bits;
 
 fn settings(integrator: IntegratorKind, threads: usize) -> Settings {
     Settings { integrator, threads, perturbation: 1e-6, ..Settings::default() }
@@ -46,13 +47,6 @@ fn advance(simulation: &mut Simulation) -> Certificate {
 type Scene = fn(IntegratorKind, usize) -> Simulation;
 
 const SCENES: [(&str, Scene); 2] = [("sheet on ball", sheet_on_ball), ("two sheets", two_sheets)];
-
-fn velocity_bits(simulation: &Simulation) -> Vec<u64> {
-    (0..simulation.cloth_count())
-        .flat_map(|cloth| simulation.velocities(cloth))
-        .flat_map(|velocity| [velocity.x, velocity.y, velocity.z].map(f64::to_bits))
-        .collect()
-}
 
 #[test]
 fn what_touches_has_the_same_bits_with_one_two_three_four_and_eight_threads() {

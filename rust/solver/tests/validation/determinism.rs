@@ -89,7 +89,7 @@ fn one_two_three_four_and_eight_threads_give_the_same_bits() {
     }
 }
 
-fn velocity_bits(simulation: &Simulation) -> Vec<u64> {
+pub(crate) fn velocity_bits(simulation: &Simulation) -> Vec<u64> {
     (0..simulation.cloth_count())
         .flat_map(|cloth| simulation.velocities(cloth))
         .flat_map(|velocity| [velocity.x, velocity.y, velocity.z].map(f64::to_bits))

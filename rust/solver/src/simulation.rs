@@ -64,6 +64,15 @@ pub struct Simulation {
     threads: ThreadPool,
 }
 
+/// How a frame went.
+enum Outcome {
+    Well,
+    /// A particle is lost.
+    Lost(usize),
+    /// Its steps were too long for its contacts.
+    TooLong,
+}
+
 impl fmt::Debug for Simulation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Simulation of {} particles at frame {}", self.state.len(), self.frame)
@@ -215,17 +224,18 @@ impl Simulation {
     pub fn advance(&mut self) -> Result<Certificate> {
         let mut substeps = self.plan()?;
         self.keep();
-        let mut lost = self.run(substeps, false);
-        if let Some(more) = self.plan_again(substeps) {
+        let mut outcome = self.run(substeps, false);
+        while let Some(more) = self.plan_again(substeps, &outcome) {
             self.fall_back();
             substeps = more;
-            lost = self.run(substeps, false);
+            outcome = self.run(substeps, false);
         }
-        if lost.is_some() {
+        if let Outcome::Lost(_) = outcome {
             // Once more, looking after each step: what is lost spreads from step to step.
             self.fall_back();
-            let first = self.run(substeps, true).unwrap_or(0);
+            let outcome = self.run(substeps, true);
             self.fall_back();
+            let Outcome::Lost(first) = outcome else { return Err(self.diverged(0)) };
             return Err(self.diverged(first));
         }
         self.frame += 1;
@@ -255,14 +265,17 @@ impl Simulation {
         self.method.take_iterations();
         self.contacts.take_clipped();
         self.state.copy_from(&self.good);
+        if self.intersections.is_some_and(|count| count > 0) {
+            self.intersect();
+        }
         if let (Some(memory), Some(good)) = (self.method.memory_mut(), &self.good_memory) {
             memory.copy_from(good);
         }
     }
 
-    /// Moves on by the steps of a frame and returns the first particle that is lost at its end; or, if it watches, as
-    /// soon as there is one.
-    fn run(&mut self, substeps: u32, watches: bool) -> Option<usize> {
+    /// Moves on by the steps of a frame, and looks for what is lost at its end; or, if it watches, after each step.
+    fn run(&mut self, substeps: u32, watches: bool) -> Outcome {
+        let may_shorten = !watches && self.may_shorten(substeps);
         let duration = self.frame_duration();
         let h = duration / f64::from(substeps);
         if self.frame == self.settings.first_frame && self.settings.perturbation > 0.0 {
@@ -276,11 +289,15 @@ impl Simulation {
         let others = state.len() / CHUNK;
         threads.install(|| {
             with_others_awake(others, || {
-                (1..=substeps).find_map(|substep| {
+                let outcome = (1..=substeps).find_map(|substep| {
                     let step = Step { system, pins, h, number: substep, count: substeps, stride };
-                    step.run(state, method, contacts, limits);
-                    if watches || substep == substeps { first_lost(state) } else { None }
-                })
+                    let is_short = step.run(state, method, contacts, limits);
+                    let is_seen = watches || substep == substeps;
+                    let lost = if is_seen { first_lost(state) } else { None };
+                    let too_long = (may_shorten && !is_short).then_some(Outcome::TooLong);
+                    too_long.or(lost.map(Outcome::Lost))
+                });
+                outcome.unwrap_or(Outcome::Well)
             })
         })
     }

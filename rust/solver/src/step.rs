@@ -21,6 +21,9 @@ const SWEEPS_AFTER_PULL: usize = 480;
 /// How often limiters and contacts take turns at the end of a frame, until both hold.
 const TURNS: usize = 8;
 
+/// More steps are taken if one cuts the ways of more than one in so many particles short.
+const MANY: usize = 20;
+
 /// What a substep works with.
 pub(crate) struct Step<'a> {
     pub(crate) system: &'a System,
@@ -35,14 +38,15 @@ pub(crate) struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// Moves the state by one substep.
+    /// Moves the state by one substep, and says whether it was short enough: contacts cut few ways short, and at the end of
+    /// a frame all edges are held.
     pub(crate) fn run(
         &self,
         state: &mut State,
         method: &mut Method,
         contacts: &mut Contacts,
         limits: &mut [Limit],
-    ) {
+    ) -> bool {
         let is_last = self.number == self.count;
         let done = self.number - 1;
         if !contacts.is_empty() && done.is_multiple_of(self.stride) {
@@ -60,19 +64,18 @@ impl Step<'_> {
         }
         let mut is_held = self.limit(state, method, limits, is_last);
         if !meets {
-            return;
+            return true;
         }
         let mut clipped = contacts.truncate(&mut state.position);
-        if !is_last {
-            return;
-        }
-        for _ in 0..TURNS {
+        let is_short = contacts.clipped_in_step() as usize * MANY <= self.system.particle_count();
+        for _ in 0..if is_last { TURNS } else { 0 } {
             if clipped == 0 && is_held {
                 break;
             }
             is_held = self.hold(state, limits, SWEEPS_AFTER_PULL, true);
             clipped = contacts.truncate(&mut state.position);
         }
+        is_short && (!is_last || is_held && clipped == 0)
     }
 
     /// Limits strain after the method's step, and says whether all edges are held.

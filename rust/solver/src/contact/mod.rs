@@ -70,8 +70,9 @@ pub(crate) struct Contacts {
     pub(crate) matrix: ContactMatrix,
     /// What each contact does at the present guess.
     pressures: Vec<Pressure>,
-    /// Vertices that were cut short since they were last counted.
+    /// Vertices that were cut short since they were last counted, and those of them before the present step.
     clipped: u32,
+    clipped_before: u32,
 }
 
 impl Contacts {
@@ -92,6 +93,7 @@ impl Contacts {
             matrix: ContactMatrix::default(),
             pressures: Vec::new(),
             clipped: 0,
+            clipped_before: 0,
             bodies,
         }
     }
@@ -111,9 +113,14 @@ impl Contacts {
         self.near.len() as u32
     }
 
-    /// Vertices whose way was cut short, once for each step, since this was last asked.
+    /// Vertices whose way was cut short, once for each cut, since this was last asked.
     pub(crate) fn take_clipped(&mut self) -> u32 {
         std::mem::take(&mut self.clipped)
+    }
+
+    /// The same in the present step so far.
+    pub(crate) fn clipped_in_step(&self) -> u32 {
+        self.clipped - self.clipped_before
     }
 
     /// The force (N) that each contact presses each of its particles with.
@@ -190,6 +197,7 @@ impl Contacts {
             *step = at(part[1], from, to) - start;
         }
         self.origins.copy_from_slice(&self.paths.start);
+        self.clipped_before = self.clipped;
     }
 
     /// Starts the rest of a step from where its first part has ended (m): the colliders have already gone their way.

@@ -505,6 +505,24 @@ fn truncated_ways_lead_through_nothing_by_brute_force() {
     }
 }
 
+/// What falls upon something that stays stops layer by layer, and what has stopped ends where it was expected to.
+#[test]
+fn what_stops_one_after_the_other_passes_through_nothing() {
+    for seed in 0..6 {
+        let cloths = [folded(seed), above(folded(90 + seed)), above(above(soup(3, 77 + seed)))];
+        let wanted = |starts: &[Vector]| {
+            let all = starts.iter().zip(moved(starts, 0.002, 13 * seed)).enumerate();
+            let falls = |i: usize| if i < 20 { 0.0 } else { 0.03 + 0.01 * random(i / 8).x };
+            all.map(|(i, (_, x))| x - falls(i) * Vector::z()).collect()
+        };
+        let still = |starts: &[Vector]| starts.to_vec();
+        let (contacts, clipped, [starts, _, ends]) = truncated(&cloths, still, wanted);
+        let found = passes(&contacts, &starts, &ends);
+        assert!(found.is_empty(), "seed {seed}: {found:?}");
+        assert!(clipped > 30, "{clipped} were cut");
+    }
+}
+
 #[test]
 fn truncation_returns_the_wanted_ends_to_the_bit_where_nothing_meets() {
     let shift = Vector::new(3.0, -20.0, 0.7);

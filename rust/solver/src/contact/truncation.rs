@@ -1,8 +1,8 @@
 //! No way goes through anything: ways are cut short by planes between the features that would meet ([`super::cut`]).
 //!
 //! Points go as near to where they want as their planes let them ([`super::half_space`]), which may bring them near
-//! others: those are looked for in rounds, until there are none. Planes stay, so rounds end; after some, what still is
-//! not safe stays where it started.
+//! others: those are looked for in rounds, until there are none. Planes stay; after some rounds, what still is not safe
+//! stays where it started, and what meets that, until all is safe.
 //!
 //! Where the step was expected to lead is known from detection, and with it all candidates that may meet on ways that differ
 //! from those by no more than the thickness of the cloth. Only what strays farther is looked for again.
@@ -15,9 +15,6 @@ use super::candidate::Candidate;
 use super::cut::{Cut, LEAST, MOST, cut, half_spaces};
 use super::half_space::{HalfSpace, end_within};
 use crate::state::Coordinates;
-
-/// Rounds of cutting.
-const ROUNDS: usize = 24;
 
 /// Rounds after which what is not safe no longer moves.
 const SLIDING_ROUNDS: usize = 12;
@@ -50,12 +47,13 @@ impl Contacts {
         };
         if cutting.is_changed.contains(&true) {
             self.stay_before_planes(&mut cutting);
-            for round in 0..ROUNDS {
+            // Each round after the first few stops a point more at the least.
+            for round in 0.. {
                 let cuts = self.cuts(&cutting.is_changed);
-                if cuts.is_empty() {
+                self.take_up(&cuts, round < SLIDING_ROUNDS, &mut cutting);
+                if !cutting.is_changed.contains(&true) {
                     break;
                 }
-                self.take_up(&cuts, round < SLIDING_ROUNDS, &mut cutting);
             }
         }
         self.is_safe = true;
@@ -89,36 +87,36 @@ impl Contacts {
         let cuts = watched.filter(|candidate| is_concerned(candidate));
         let mut cuts: Vec<Cut> =
             cuts.filter_map(|candidate| cut(candidate, bodies, paths)).collect();
-        let is_astray = |(point, is_changed): (usize, &bool)| {
+        let is_astray = |point: usize| {
             let slack = bodies.body(point as u32).thickness - MOST;
-            *is_changed && (paths.step[point] - expected[point]).norm_squared() > slack * slack
+            (paths.step[point] - expected[point]).norm_squared() > slack * slack
         };
-        let is_astray: Vec<bool> = is_changed.iter().enumerate().map(is_astray).collect();
+        let is_astray: Vec<bool> = (0..is_changed.len()).map(is_astray).collect();
         if is_astray.contains(&true) {
             self.fit(|body| body.radius + MOST);
             let Self { bodies, paths, .. } = &*self;
-            cuts.extend(self.search(Some(&is_astray), |candidate, found| {
+            // Pairs with a point that has changed and one that is astray: all are found from the fewer of both.
+            let count = |marks: &[bool]| marks.iter().filter(|is_marked| **is_marked).count();
+            let marks = if count(&is_astray) < count(is_changed) { &is_astray } else { is_changed };
+            cuts.extend(self.search(Some(marks), |candidate, found| {
                 found.extend(cut(&candidate, bodies, paths));
             }));
         }
         cuts
     }
 
-    /// Takes cuts up: with their planes, if points may still slide along them.
+    /// Takes cuts up: with their planes, if points may still slide along them. What that does not move, stops.
     fn take_up(&mut self, cuts: &[Cut], may_slide: bool, cutting: &mut Cutting) {
         cutting.is_changed.fill(false);
-        for cut in cuts {
-            let is_plane = matches!(cut, Cut::Plane { .. });
-            if is_plane && may_slide {
-                let half_spaces_so_far = &mut cutting.half_spaces;
-                half_spaces(cut, &self.paths, |half_space| half_spaces_so_far.push(half_space));
-                continue;
-            }
-            for &point in &cut.candidate().points {
-                if self.paths.is_free(point) {
-                    cutting.is_stopped[point as usize] = true;
-                }
-            }
+        for cut in cuts.iter().filter(|_| may_slide) {
+            half_spaces(cut, &self.paths, |half_space| cutting.half_spaces.push(half_space));
+        }
+        self.shorten(cutting);
+        let Cutting { is_stopped, is_changed, .. } = cutting;
+        let is_moved = |point: &u32| is_changed.get(*point as usize) == Some(&true);
+        let idle = cuts.iter().map(Cut::candidate).filter(|cut| !cut.points.iter().any(is_moved));
+        for &point in idle.flat_map(|cut| &cut.points).filter(|&&point| self.paths.is_free(point)) {
+            is_stopped[point as usize] = true;
         }
         self.shorten(cutting);
     }
@@ -127,7 +125,8 @@ impl Contacts {
     fn shorten(&mut self, cutting: &mut Cutting) {
         let Cutting { half_spaces, wanted, is_stopped, is_changed } = cutting;
         half_spaces.sort_by_key(|half_space| half_space.point);
-        for own in half_spaces.chunk_by(|one, other| one.point == other.point) {
+        let held = half_spaces.chunk_by(|one, other| one.point == other.point);
+        for own in held.filter(|own| !is_stopped[own[0].point as usize]) {
             let point = own[0].point as usize;
             let start = self.paths.start[point];
             let step = end_within(&start, start + wanted[point], own) - start;
@@ -136,9 +135,8 @@ impl Contacts {
         }
         let stopped = is_stopped.iter().enumerate().filter(|(_, is_stopped)| **is_stopped);
         for (point, _) in stopped {
-            let step = &mut self.paths.step[point];
-            is_changed[point] = is_changed[point] || *step != Vector::zeros();
-            *step = Vector::zeros();
+            let step = std::mem::take(&mut self.paths.step[point]);
+            is_changed[point] = is_changed[point] || step != Vector::zeros();
         }
     }
 

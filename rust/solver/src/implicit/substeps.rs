@@ -8,13 +8,17 @@
 //! ```
 //!
 //! with the cloths' size (m). Few numbers are used, and fewer steps only if they are clearly enough, because each change
-//! of the step factors the matrix anew. A pin that is to change its velocity has an error before the frame begins. A frame
+//! of the step factors the matrix anew. A frame whose contacts cut too many ways short is done once more with twice the
+//! steps. A pin that is to change its velocity has an error before the frame begins. A frame
 //! in which cloth snaps taut shows it only at its end: if it should have had twice as many steps, it is done once more.
 
 use crate::contact::LONGEST_WAY;
 
 /// The numbers of steps that are taken.
-const COUNTS: [u32; 10] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48];
+const COUNTS: [u32; 12] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96];
+
+/// The most that errors ask for; contacts may need more.
+const MOST: f64 = 48.0;
 
 /// Steps of a first frame.
 const FIRST: u32 = 4;
@@ -56,11 +60,19 @@ impl Accuracy {
     /// Steps after a frame of so many with a mean error (m).
     pub(crate) fn after(self, substeps: u32, error: f64) -> u32 {
         let wanted = f64::from(substeps) * (error / (SCALE * self.tolerance * self.size)).cbrt();
-        let mut count = at_least(wanted);
+        let mut count = at_least(wanted.min(MOST));
         if self.is_in_contact {
-            count = count.clamp(LEAST_IN_CONTACT, MOST_IN_CONTACT);
+            // More were taken because contact asked for them: half of them may do now.
+            let calmer = at_least(0.5 * f64::from(substeps));
+            count = count.clamp(LEAST_IN_CONTACT, MOST_IN_CONTACT).max(calmer);
         }
         if count < substeps && wanted > CLEARLY * f64::from(count) { substeps } else { count }
+    }
+
+    /// Steps with which a frame is done once more whose steps were too long for its contacts, if there may be more.
+    pub(crate) fn shorter(substeps: u32) -> Option<u32> {
+        let count = at_least(2.0 * f64::from(substeps));
+        (count > substeps).then_some(count)
     }
 
     /// Steps with which a frame is done once more, if far too few were taken.
@@ -121,6 +133,15 @@ mod tests {
         assert_eq!(ACCURACY.plan(0, 0.0, 0.0, duration), FIRST);
         assert_eq!(ACCURACY.plan(3, 0.0, 0.0, duration), 3);
         assert!(ACCURACY.plan(3, 20.0, 0.0, duration) >= 8);
+    }
+
+    #[test]
+    fn steps_too_long_for_contacts_become_half_as_long_and_longer_again_by_and_by() {
+        assert_eq!(Accuracy::shorter(6), Some(12));
+        assert_eq!(Accuracy::shorter(48), Some(96));
+        assert_eq!(Accuracy::shorter(96), None);
+        let touching = Accuracy { is_in_contact: true, ..ACCURACY };
+        assert_eq!(touching.after(24, 0.0), 12);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use boucle_geometry::Vector;
 
-use super::Simulation;
+use super::{Outcome, Simulation};
 use crate::certificate::length;
 use crate::cloth::Cloth;
 use crate::contact::LONGEST_WAY;
@@ -106,10 +106,19 @@ impl Simulation {
     }
 
     /// Steps with which the frame just run is to be done once more, if it is.
-    pub(super) fn plan_again(&self, substeps: u32) -> Option<u32> {
+    pub(super) fn plan_again(&self, substeps: u32, outcome: &Outcome) -> Option<u32> {
         let memory = self.method.memory().filter(|_| self.settings.step_size == StepSize::Auto)?;
+        if matches!(outcome, Outcome::TooLong) {
+            return Accuracy::shorter(substeps);
+        }
         let accuracy = self.accuracy_now();
         accuracy.again(substeps, memory.mean_error(substeps))
+    }
+
+    /// Whether a frame of so many steps may be done once more with more, if they are too long for its contacts.
+    pub(super) fn may_shorten(&self, substeps: u32) -> bool {
+        let is_free = self.method.is_implicit() && self.settings.step_size == StepSize::Auto;
+        is_free && Accuracy::shorter(substeps).is_some()
     }
 }
 

@@ -14,6 +14,7 @@ mod candidate;
 #[expect(clippy::module_inception, reason = "the module of contact holds the type of one contact")]
 mod contact;
 mod cut;
+mod detection;
 mod features;
 mod friction;
 mod half_space;
@@ -30,15 +31,15 @@ mod tests;
 mod truncation;
 
 use boucle_geometry::Vector;
-use rayon::prelude::*;
 
 use crate::cloth::Cloth;
 use crate::collider::Collider;
 use crate::state::Coordinates;
 use bodies::Bodies;
 use candidate::Candidate;
-use contact::{Contact, Near};
+use contact::Contact;
 use features::Trees;
+pub use detection::Detection;
 pub(crate) use matrix::ContactMatrix;
 use paths::Paths;
 use pressing::Pressure;
@@ -200,34 +201,6 @@ impl Contacts {
         for (start, step) in colliders {
             *start += std::mem::take(step);
         }
-    }
-
-    /// Finds the contacts on the way to these positions (m), in a step of h' seconds, and what to watch there.
-    pub(crate) fn detect(&mut self, ends: &Coordinates, inverse_masses: &[f64], h: f64) {
-        self.paths.set_ends(ends);
-        self.expected.copy_from_slice(&self.paths.step);
-        self.is_safe = false;
-        self.fit(|body| body.radius + body.thickness);
-        let Self { bodies, paths, .. } = &*self;
-        let found = self.search(None, |candidate, found| {
-            let near = Near::new(&candidate, bodies, paths);
-            let contact = near.contact(&candidate, bodies);
-            if contact.is_some() || near.is_to_be_watched() {
-                found.push((candidate, contact));
-            }
-        });
-        let mut contacts: Vec<Contact> = found.iter().filter_map(|(_, contact)| *contact).collect();
-        contacts.extend(self.parting());
-        self.watched = found.into_iter().map(|(candidate, _)| candidate).collect();
-        self.each_plane(|particle, plane, normal| {
-            let points = [particle, plane.points[0]];
-            contacts.extend(Contact::with_plane(points, normal, &self.bodies, &self.paths));
-        });
-        contacts.par_iter_mut().for_each(|contact| contact.stiffen(inverse_masses, h));
-        self.near = contacts;
-        self.matrix.join(&self.near, inverse_masses);
-        self.pressures.clear();
-        self.pressures.resize(self.near.len(), Pressure::default());
     }
 
     /// Calls `visit` with each particle and each plane that it may touch, and the plane's normal at the end of the step.

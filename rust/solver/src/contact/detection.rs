@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use super::Contacts;
+use super::candidate::Candidate;
 use super::contact::{Contact, Near};
 use super::pressing::Pressure;
 use crate::state::Coordinates;
@@ -24,6 +25,13 @@ pub struct Detection {
     pub whole: Duration,
 }
 
+/// What a task has found.
+#[derive(Default)]
+struct Found {
+    watched: Vec<Candidate>,
+    contacts: Vec<Contact>,
+}
+
 impl Contacts {
     /// Finds the contacts on the way to these positions (m), in a step of h' seconds, and what to watch there.
     pub(crate) fn detect(
@@ -39,23 +47,17 @@ impl Contacts {
         self.fit(|body| body.radius + body.thickness);
         let fit = start.elapsed();
         let Self { bodies, paths, .. } = &*self;
-        let found = self.search(None, |candidate, found| {
+        let found = self.search(None, |candidate, found: &mut Found| {
             let near = Near::new(&candidate, bodies, paths);
             let contact = near.contact(&candidate, bodies);
             if contact.is_some() || near.is_to_be_watched() {
-                found.push((candidate, contact));
+                found.watched.push(candidate);
+                found.contacts.extend(contact);
             }
         });
         let search = start.elapsed() - fit;
-        let mut contacts: Vec<Contact> = found.iter().filter_map(|(_, contact)| *contact).collect();
-        contacts.extend(self.parting());
-        self.watched = found.into_iter().map(|(candidate, _)| candidate).collect();
-        self.each_plane(|particle, plane, normal| {
-            let points = [particle, plane.points[0]];
-            contacts.extend(Contact::with_plane(points, normal, &self.bodies, &self.paths));
-        });
-        contacts.par_iter_mut().for_each(|contact| contact.stiffen(inverse_masses, h));
-        self.near = contacts;
+        self.take(&found);
+        self.near.par_iter_mut().for_each(|contact| contact.stiffen(inverse_masses, h));
         self.matrix.join(&self.near, inverse_masses);
         self.pressures.clear();
         self.pressures.resize(self.near.len(), Pressure::default());
@@ -66,5 +68,22 @@ impl Contacts {
             search,
             whole: start.elapsed(),
         }
+    }
+
+    /// Takes the findings of all tasks for its own, in their order, with what else presses.
+    fn take(&mut self, found: &[Found]) {
+        self.watched.clear();
+        self.near.clear();
+        for Found { watched, contacts } in found {
+            self.watched.extend_from_slice(watched);
+            self.near.extend_from_slice(contacts);
+        }
+        let mut contacts = std::mem::take(&mut self.near);
+        contacts.extend(self.parting());
+        self.each_plane(|particle, plane, normal| {
+            let points = [particle, plane.points[0]];
+            contacts.extend(Contact::with_plane(points, normal, &self.bodies, &self.paths));
+        });
+        self.near = contacts;
     }
 }

@@ -26,11 +26,12 @@ mod recovery;
 mod response;
 mod search;
 mod settling;
+mod sieve;
 #[cfg(test)]
 mod tests;
 mod truncation;
 
-use boucle_geometry::Vector;
+use boucle_geometry::{Vector, Way};
 
 use crate::cloth::Cloth;
 use crate::collider::Collider;
@@ -38,8 +39,8 @@ use crate::state::Coordinates;
 use bodies::Bodies;
 use candidate::Candidate;
 use contact::Contact;
-use features::Trees;
 pub use detection::Detection;
+use features::Trees;
 pub(crate) use matrix::ContactMatrix;
 use paths::Paths;
 use pressing::Pressure;
@@ -56,6 +57,8 @@ pub(crate) struct Contacts {
     cloths: Trees,
     colliders: Trees,
     paths: Paths,
+    /// The same ways in f32, as boxes were last fitted to them.
+    ways: Vec<Way>,
     /// Where all points were (m) when the step began: what slips has slipped from there.
     origins: Vec<Vector>,
     /// Where the colliders' points are (m) at the start and at the end of the frame.
@@ -83,6 +86,7 @@ impl Contacts {
             cloths: Trees::new(&bodies.cloths, &bodies.rest, &bodies.body_of),
             colliders: Trees::new(&bodies.colliders, &bodies.rest, &bodies.body_of),
             paths: Paths::at_rest(&bodies.rest),
+            ways: vec![Way::default(); bodies.rest.len()],
             origins: bodies.rest.clone(),
             frame: [of_colliders.to_vec(), of_colliders.to_vec()],
             near: Vec::new(),

@@ -97,9 +97,10 @@ impl Contacts {
         if is_astray.contains(&true) {
             self.fit(|body| body.radius + MOST);
             let Self { bodies, paths, .. } = &*self;
-            cuts.extend(self.search(Some(&is_astray), |candidate, found| {
+            let found = self.search(Some(&is_astray), |candidate, found: &mut Vec<Cut>| {
                 found.extend(cut(&candidate, bodies, paths));
-            }));
+            });
+            cuts.extend(found.into_iter().flatten());
         }
         cuts
     }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::bodies::{Bodies, Body};
 use super::candidate::Candidate;
 use super::features::{Edge, Features, Triangle};
-use super::sieve::{Sieve, edge_edge, point_triangle};
+use super::sieve::Sieve;
 use super::{Contacts, Trees};
 
 /// Points that one task fits, at the least.
@@ -71,7 +71,7 @@ impl<V> Search<'_, V> {
             let is_lone = !self.bodies.is_particle(point) && self.bodies.body(point).radius > 0.0;
             Candidate::point_triangle(point, triangle, is_lone)
         });
-        Sieve::sift(self.ways, candidates, point_triangle, |each| (self.visit)(each, found));
+        Sieve::sift(self.ways, candidates, |each| (self.visit)(each, found));
     }
 
     /// Shows what the sieve leaves of pairs of edges.
@@ -83,7 +83,7 @@ impl<V> Search<'_, V> {
             let is_lone = self.bodies.body(second.points[0]).radius > 0.0;
             Candidate::edge_edge(first, second, is_lone)
         });
-        Sieve::sift(self.ways, candidates, edge_edge, |each| (self.visit)(each, found));
+        Sieve::sift(self.ways, candidates, |each| (self.visit)(each, found));
     }
 
     /// The pairs of items of two hierarchies; of those of which the first is marked by what has changed, if it is said.

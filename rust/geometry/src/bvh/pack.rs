@@ -1,5 +1,7 @@
 //! Eight boxes side by side.
 
+use pulp::Simd;
+
 use crate::Vector;
 
 /// How many boxes a pack holds.
@@ -112,17 +114,31 @@ impl Pack {
 
     /// A bit for each of the eight that may meet another.
     #[inline(always)]
-    pub(super) fn meets(&self, other: &Sweep) -> u32 {
-        let mut apart = [f32::NEG_INFINITY; WIDTH];
-        let least = |a: f32, b: f32| if a < b { a } else { b };
-        let most = |a: f32, b: f32| if a > b { a } else { b };
-        for axis in 0..3 {
-            for (lane, apart) in apart.iter_mut().enumerate() {
-                let ahead = |time: usize| self.min[time][axis][lane] - other.max[time][axis];
-                let behind = |time: usize| other.min[time][axis] - self.max[time][axis][lane];
-                let ahead = least(ahead(0), ahead(1));
-                let behind = least(behind(0), behind(1));
-                *apart = most(most(ahead, behind), *apart);
+    pub(super) fn meets<S: Simd>(&self, simd: S, other: &Sweep) -> u32 {
+        const { assert!(S::F32_LANES <= WIDTH, "a vector holds more than a pack") };
+        let mut apart = [0.0; WIDTH];
+        for (vector, apart) in S::as_mut_simd_f32s(&mut apart).0.iter_mut().enumerate() {
+            *apart = simd.splat_f32s(f32::NEG_INFINITY);
+            for axis in 0..3 {
+                let start = simd.sub_f32s(
+                    S::as_simd_f32s(&self.min[0][axis]).0[vector],
+                    simd.splat_f32s(other.max[0][axis]),
+                );
+                let end = simd.sub_f32s(
+                    S::as_simd_f32s(&self.min[1][axis]).0[vector],
+                    simd.splat_f32s(other.max[1][axis]),
+                );
+                let ahead = simd.min_f32s(start, end);
+                let start = simd.sub_f32s(
+                    simd.splat_f32s(other.min[0][axis]),
+                    S::as_simd_f32s(&self.max[0][axis]).0[vector],
+                );
+                let end = simd.sub_f32s(
+                    simd.splat_f32s(other.min[1][axis]),
+                    S::as_simd_f32s(&self.max[1][axis]).0[vector],
+                );
+                let behind = simd.min_f32s(start, end);
+                *apart = simd.max_f32s(*apart, simd.max_f32s(ahead, behind));
             }
         }
         let mut bits = 0;

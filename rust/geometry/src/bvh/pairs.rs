@@ -130,10 +130,10 @@ impl<T, V: Fn(&[[u32; 2]], &mut T)> WithSimd for Search<'_, '_, T, V> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, _: S) {
+    fn with_simd<S: Simd>(mut self, simd: S) {
         for group in self.groups.clone() {
             if self.is_searched(group) {
-                self.descend(group);
+                self.descend(simd, group);
             }
         }
     }
@@ -161,7 +161,7 @@ impl<T, V: Fn(&[[u32; 2]], &mut T)> Search<'_, '_, T, V> {
 
     /// Finds what the items of a group may meet.
     #[inline(always)]
-    fn descend(&mut self, group: usize) {
+    fn descend<S: Simd>(&mut self, simd: S, group: usize) {
         let whole = self.own.levels[1][group].hull();
         let is_same = self.is_same();
         let mut stack = [(0_usize, 0_usize); DEPTH * WIDTH];
@@ -173,11 +173,11 @@ impl<T, V: Fn(&[[u32; 2]], &mut T)> Search<'_, '_, T, V> {
             if level == 1 {
                 // Where both groups are searched, the first of them sees to the pair.
                 if !is_same || place >= group || !self.is_searched(place) {
-                    self.compare_groups(group, place);
+                    self.compare_groups(simd, group, place);
                 }
                 continue;
             }
-            let mut bits = self.other.levels[level][place].meets(&whole);
+            let mut bits = self.other.levels[level][place].meets(simd, &whole);
             while bits != 0 {
                 let child = place * WIDTH + bits.trailing_zeros() as usize;
                 bits &= bits - 1;
@@ -193,7 +193,7 @@ impl<T, V: Fn(&[[u32; 2]], &mut T)> Search<'_, '_, T, V> {
 
     /// Compares the packs of two groups.
     #[inline(always)]
-    fn compare_groups(&mut self, group: usize, place: usize) {
+    fn compare_groups<S: Simd>(&mut self, simd: S, group: usize, place: usize) {
         let [own, other] = [&self.own.levels[1][group], &self.other.levels[1][place]];
         let is_same = self.is_same();
         for lane in 0..WIDTH {
@@ -202,21 +202,21 @@ impl<T, V: Fn(&[[u32; 2]], &mut T)> Search<'_, '_, T, V> {
                 break;
             }
             let whole = own.get(lane);
-            let mut bits = other.meets(&whole);
+            let mut bits = other.meets(simd, &whole);
             if is_same && place == group {
                 bits &= ALL << lane;
             }
             while bits != 0 {
                 let other_lane = bits.trailing_zeros() as usize;
                 bits &= bits - 1;
-                self.compare([pack, place * WIDTH + other_lane], other, other_lane);
+                self.compare(simd, [pack, place * WIDTH + other_lane], other, other_lane);
             }
         }
     }
 
     /// Compares the items of two packs, of which the second lies in a lane of its group.
     #[inline(always)]
-    fn compare(&mut self, [pack, place]: [usize; 2], group: &Pack, lane: usize) {
+    fn compare<S: Simd>(&mut self, simd: S, [pack, place]: [usize; 2], group: &Pack, lane: usize) {
         let is_same = self.is_same();
         let marks = [self.marks_of(pack), if is_same { self.marks_of(place) } else { 0 }];
         if marks == [0, 0] {
@@ -224,11 +224,11 @@ impl<T, V: Fn(&[[u32; 2]], &mut T)> Search<'_, '_, T, V> {
         }
         let [own, other] = [&self.own.levels[0][pack], &self.other.levels[0][place]];
         // Most items of two packs whose hulls meet are beside the other hull.
-        let mut near = own.meets(&group.get(lane));
+        let mut near = own.meets(simd, &group.get(lane));
         while near != 0 {
             let lane = near.trailing_zeros() as usize;
             near &= near - 1;
-            let mut bits = other.meets(&own.get(lane));
+            let mut bits = other.meets(simd, &own.get(lane));
             if is_same && place == pack {
                 bits &= ALL << (lane + 1);
             }

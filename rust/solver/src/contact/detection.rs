@@ -55,7 +55,7 @@ impl Contacts {
                 found.contacts.extend(contact);
             }
         });
-        let search = start.elapsed() - fit;
+        let search = start.elapsed().saturating_sub(fit);
         self.take(&found);
         self.near.par_iter_mut().for_each(|contact| contact.stiffen(inverse_masses, h));
         self.matrix.join(&self.near, inverse_masses);

@@ -10,7 +10,7 @@ mod mesh;
 mod winding;
 
 pub use aabb::Aabb;
-pub use bvh::{Bvh, Sweep};
+pub use bvh::{Bvh, Sweep, Way};
 pub use ccd::{edge_edge_impact, point_triangle_impact};
 pub use intersection::{Meeting, edge_crosses_triangle, edge_meets_triangle};
 pub use mesh::{Mesh, MeshError};

@@ -45,6 +45,7 @@ pub use certificate::Certificate;
 pub use cloth::{Cloth, Mass, mesh_of};
 pub use collider::{Collider, Shape};
 pub use collision::Collision;
+pub use contact::Detection;
 pub use error::{Error, Result};
 pub use force::{Region, Wind, WindLaw};
 pub use law::{Spring, springs_of_mesh};

@@ -1,14 +1,14 @@
 //! A hierarchy of boxes over moving items: which of them may come near each other?
 //!
-//! An item is a box of where it is and a box of how far each of its points moves. Two items may meet on the way if, on
-//! every axis,
+//! An item is two boxes: one around where its points start, one around where they end. On straight ways, two items stay
+//! apart if on one axis
 //!
 //! ```text
-//! min_B - max_A + min(0, low_B - high_A) <= 0        and the same with A and B exchanged
+//! min_A > max_B   at the start and at the end            or the same with A and B exchanged
 //! ```
 //!
-//! with min and max of the places and low and high of the moves: only relative motion counts, and what falls together
-//! does not meet.
+//! for what is positive at both ends of a line is positive between. Only relative motion counts: what falls together does
+//! not meet.
 //!
 //! Items are sorted once along a space-filling curve through where they are at rest, and packed by eights; eight packs
 //! make a pack of the next level. Cloth keeps its neighbours, so the order stays good and only boxes are fitted anew.
@@ -23,11 +23,11 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use crate::Vector;
-pub use pack::Sweep;
-pub(crate) use pack::{Pack, WIDTH};
+use pack::{Pack, WIDTH};
+pub use pack::{Sweep, Way};
 
 /// Packs that one task fits, at the least.
-const PACKS: usize = 32;
+const PACKS: usize = 16;
 
 /// A hierarchy of boxes over items numbered from 0.
 #[derive(Clone, Debug)]
@@ -61,21 +61,30 @@ impl Bvh {
     /// Fits all boxes to where the items are now.
     pub fn fit(&mut self, sweep_of: impl Fn(u32) -> Sweep + Sync) {
         let (lowest, upper) = self.levels.split_at_mut(1);
-        let packs = lowest[0].par_iter_mut().zip(self.items.par_chunks(WIDTH));
-        packs.with_min_len(PACKS).for_each(|(pack, items)| {
+        let fit = |pack: &mut Pack, items: &[u32]| {
             for (lane, &item) in items.iter().enumerate() {
                 let sweep = if item == u32::MAX { Sweep::EMPTY } else { sweep_of(item) };
                 pack.set(lane, &sweep);
             }
-        });
-        let mut below = &lowest[0][..];
-        for level in upper {
-            for (pack, children) in level.iter_mut().zip(below.chunks(WIDTH)) {
-                for (lane, child) in children.iter().enumerate() {
-                    pack.set(lane, &child.hull());
-                }
+        };
+        let around = |pack: &mut Pack, children: &[Pack]| {
+            for (lane, child) in children.iter().enumerate() {
+                pack.set(lane, &child.hull());
             }
-            below = level;
+        };
+        // The packs of the lowest level are still at hand for the next.
+        let parents = upper[0].par_iter_mut().zip(lowest[0].par_chunks_mut(WIDTH));
+        let parents = parents.zip(self.items.par_chunks(WIDTH * WIDTH));
+        parents.with_min_len(PACKS / WIDTH).for_each(|((parent, packs), items)| {
+            for (pack, items) in packs.iter_mut().zip(items.chunks(WIDTH)) {
+                fit(pack, items);
+            }
+            around(parent, packs);
+        });
+        for level in 1..upper.len() {
+            let (below, above) = upper.split_at_mut(level);
+            let packs = above[0].par_iter_mut().zip(below[level - 1].par_chunks(WIDTH));
+            packs.with_min_len(PACKS).for_each(|(pack, children)| around(pack, children));
         }
     }
 }

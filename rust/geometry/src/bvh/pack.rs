@@ -1,57 +1,71 @@
 //! Eight boxes side by side.
 
+use pulp::Simd;
+
 use crate::Vector;
 
 /// How many boxes a pack holds.
-pub(crate) const WIDTH: usize = 8;
+pub(super) const WIDTH: usize = 8;
 
-/// Where an item is, and how far its points move: boxes in f32 that surely hold them.
+/// Half of what the gap of two items can lose, as a part of the largest coordinate, where all is computed in f32: some
+/// ten roundings of 6e-8 for each.
+const ROUNDING: f64 = 1.5e-6;
+
+/// The farthest that a coordinate (m) is taken to be: differences of boxes stay numbers.
+const FARTHEST: f32 = 1e30;
+
+/// The straight way of a point, in f32, and what is kept around it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(32))]
+pub struct Way {
+    /// m.
+    pub start: [f32; 3],
+    /// m.
+    pub end: [f32; 3],
+    /// How far around (m) the point is held to reach: enough to make up for rounding.
+    pub around: f32,
+}
+
+impl Way {
+    /// From a start (m) by a step (m), with so much (m) around it.
+    #[inline]
+    #[must_use]
+    pub fn new(start: &Vector, step: &Vector, around: f64) -> Self {
+        let end = start + step;
+        let farthest = start.amax().max(end.amax()) + around;
+        let single = |x: f64| (x as f32).clamp(-FARTHEST, FARTHEST);
+        let singles = |x: &Vector| [single(x.x), single(x.y), single(x.z)];
+        let around = (around + ROUNDING * farthest) as f32 + f32::MIN_POSITIVE;
+        Self { start: singles(start), end: singles(&end), around: around.min(FARTHEST) }
+    }
+}
+
+/// Boxes around where an item starts and where it ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sweep {
-    /// Smallest and largest coordinates (m) at the start.
-    pub(crate) min: [f32; 3],
-    pub(crate) max: [f32; 3],
-    /// Smallest and largest moves (m).
-    pub(crate) low: [f32; 3],
-    pub(crate) high: [f32; 3],
-}
-
-/// Rounding of a number to f32 changes it by less than this part of it.
-const ROUNDING: f32 = 1.2e-7;
-
-fn below(x: f64) -> f32 {
-    let x = x as f32;
-    x - ROUNDING * x.abs() - f32::MIN_POSITIVE
-}
-
-fn above(x: f64) -> f32 {
-    let x = x as f32;
-    x + ROUNDING * x.abs() + f32::MIN_POSITIVE
+    /// Smallest and largest coordinates (m), at the start and at the end.
+    min: [[f32; 3]; 2],
+    max: [[f32; 3]; 2],
 }
 
 impl Sweep {
     /// Of nothing: it meets nothing.
-    pub(crate) const EMPTY: Self = Self {
-        min: [f32::INFINITY; 3],
-        max: [f32::NEG_INFINITY; 3],
-        low: [0.0; 3],
-        high: [0.0; 3],
-    };
+    pub(super) const EMPTY: Self =
+        Self { min: [[f32::INFINITY; 3]; 2], max: [[f32::NEG_INFINITY; 3]; 2] };
 
-    /// Of points (m) with their moves (m), and all that is within a radius (m) of them.
+    /// Of points, and all that is around them.
     #[inline]
     #[must_use]
-    pub fn around<const N: usize>(points: [(&Vector, &Vector); N], radius: f64) -> Self {
+    pub fn of<const N: usize>(ways: [&Way; N]) -> Self {
         let mut sweep = Self::EMPTY;
-        for axis in 0..3 {
-            let (mut min, mut max) = (f64::INFINITY, f64::NEG_INFINITY);
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            for (place, step) in points {
-                (min, max) = (min.min(place[axis]), max.max(place[axis]));
-                (low, high) = (low.min(step[axis]), high.max(step[axis]));
+        for way in ways {
+            for (time, place) in [&way.start, &way.end].into_iter().enumerate() {
+                let [min, max] = [&mut sweep.min[time], &mut sweep.max[time]];
+                for axis in 0..3 {
+                    min[axis] = min[axis].min(place[axis] - way.around);
+                    max[axis] = max[axis].max(place[axis] + way.around);
+                }
             }
-            (sweep.min[axis], sweep.max[axis]) = (below(min - radius), above(max + radius));
-            (sweep.low[axis], sweep.high[axis]) = (below(low), above(high));
         }
         sweep
     }
@@ -60,69 +74,71 @@ impl Sweep {
 /// Eight sweeps, axis by axis.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
-pub(crate) struct Pack {
-    min: [[f32; WIDTH]; 3],
-    max: [[f32; WIDTH]; 3],
-    low: [[f32; WIDTH]; 3],
-    high: [[f32; WIDTH]; 3],
+pub(super) struct Pack {
+    min: [[[f32; WIDTH]; 3]; 2],
+    max: [[[f32; WIDTH]; 3]; 2],
 }
 
 impl Pack {
-    pub(crate) const EMPTY: Self = Self {
-        min: [[f32::INFINITY; WIDTH]; 3],
-        max: [[f32::NEG_INFINITY; WIDTH]; 3],
-        low: [[0.0; WIDTH]; 3],
-        high: [[0.0; WIDTH]; 3],
-    };
+    pub(super) const EMPTY: Self =
+        Self { min: [[[f32::INFINITY; WIDTH]; 3]; 2], max: [[[f32::NEG_INFINITY; WIDTH]; 3]; 2] };
 
-    pub(crate) fn set(&mut self, lane: usize, sweep: &Sweep) {
-        for axis in 0..3 {
-            self.min[axis][lane] = sweep.min[axis];
-            self.max[axis][lane] = sweep.max[axis];
-            self.low[axis][lane] = sweep.low[axis];
-            self.high[axis][lane] = sweep.high[axis];
+    #[inline]
+    pub(super) fn set(&mut self, lane: usize, sweep: &Sweep) {
+        for time in 0..2 {
+            for axis in 0..3 {
+                self.min[time][axis][lane] = sweep.min[time][axis];
+                self.max[time][axis][lane] = sweep.max[time][axis];
+            }
         }
     }
 
     #[inline(always)]
-    pub(crate) fn get(&self, lane: usize) -> Sweep {
-        let pick = |lanes: &[[f32; WIDTH]; 3]| [lanes[0][lane], lanes[1][lane], lanes[2][lane]];
-        Sweep {
-            min: pick(&self.min),
-            max: pick(&self.max),
-            low: pick(&self.low),
-            high: pick(&self.high),
-        }
+    pub(super) fn get(&self, lane: usize) -> Sweep {
+        let pick = |rows: &[[[f32; WIDTH]; 3]; 2]| {
+            rows.each_ref().map(|axes| [axes[0][lane], axes[1][lane], axes[2][lane]])
+        };
+        Sweep { min: pick(&self.min), max: pick(&self.max) }
     }
 
     /// Of all eight.
-    pub(crate) fn hull(&self) -> Sweep {
+    #[inline]
+    pub(super) fn hull(&self) -> Sweep {
         let least = |lanes: &[f32; WIDTH]| lanes.iter().copied().fold(f32::INFINITY, f32::min);
         let most = |lanes: &[f32; WIDTH]| lanes.iter().copied().fold(f32::NEG_INFINITY, f32::max);
         Sweep {
-            min: self.min.each_ref().map(least),
-            max: self.max.each_ref().map(most),
-            low: self.low.each_ref().map(least),
-            high: self.high.each_ref().map(most),
+            min: self.min.each_ref().map(|axes| axes.each_ref().map(least)),
+            max: self.max.each_ref().map(|axes| axes.each_ref().map(most)),
         }
     }
 
     /// A bit for each of the eight that may meet another.
     #[inline(always)]
-    pub(crate) fn meets(&self, other: &Sweep) -> u32 {
-        let mut apart = [f32::NEG_INFINITY; WIDTH];
-        for axis in 0..3 {
-            let [min, max] = [&self.min[axis], &self.max[axis]];
-            let [low, high] = [&self.low[axis], &self.high[axis]];
-            for lane in 0..WIDTH {
-                let nearing = low[lane] - other.high[axis];
-                let nearing = if nearing < 0.0 { nearing } else { 0.0 };
-                let ahead = (min[lane] - other.max[axis]) + nearing;
-                let nearing = other.low[axis] - high[lane];
-                let nearing = if nearing < 0.0 { nearing } else { 0.0 };
-                let behind = (other.min[axis] - max[lane]) + nearing;
-                let most = if ahead > behind { ahead } else { behind };
-                apart[lane] = if most > apart[lane] { most } else { apart[lane] };
+    pub(super) fn meets<S: Simd>(&self, simd: S, other: &Sweep) -> u32 {
+        const { assert!(S::F32_LANES <= WIDTH, "a vector holds more than a pack") };
+        let mut apart = [0.0; WIDTH];
+        for (vector, apart) in S::as_mut_simd_f32s(&mut apart).0.iter_mut().enumerate() {
+            *apart = simd.splat_f32s(f32::NEG_INFINITY);
+            for axis in 0..3 {
+                let start = simd.sub_f32s(
+                    S::as_simd_f32s(&self.min[0][axis]).0[vector],
+                    simd.splat_f32s(other.max[0][axis]),
+                );
+                let end = simd.sub_f32s(
+                    S::as_simd_f32s(&self.min[1][axis]).0[vector],
+                    simd.splat_f32s(other.max[1][axis]),
+                );
+                let ahead = simd.min_f32s(start, end);
+                let start = simd.sub_f32s(
+                    simd.splat_f32s(other.min[0][axis]),
+                    S::as_simd_f32s(&self.max[0][axis]).0[vector],
+                );
+                let end = simd.sub_f32s(
+                    simd.splat_f32s(other.min[1][axis]),
+                    S::as_simd_f32s(&self.max[1][axis]).0[vector],
+                );
+                let behind = simd.min_f32s(start, end);
+                *apart = simd.max_f32s(*apart, simd.max_f32s(ahead, behind));
             }
         }
         let mut bits = 0;

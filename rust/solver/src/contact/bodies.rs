@@ -9,6 +9,7 @@ use crate::cloth::{Cloth, placed};
 use crate::collider::{Collider, Shape};
 use crate::collision::Collision;
 
+use super::candidate::Candidate;
 use super::features::Features;
 
 /// What a cloth or a collider is made of.
@@ -144,6 +145,17 @@ impl Bodies {
     #[inline]
     pub(super) fn may_touch(&self, first: &[u32], second: &[u32]) -> bool {
         self.all_touch || self.touch(first, second)
+    }
+
+    /// The same for the features of a candidate, in any order.
+    #[inline]
+    pub(super) fn candidate_may_touch(&self, candidate: &Candidate) -> bool {
+        let (first, second) = candidate.points.split_at(candidate.split());
+        if self.is_particle(first[0]) {
+            self.may_touch(first, second)
+        } else {
+            self.may_touch(second, first)
+        }
     }
 
     fn touch(&self, first: &[u32], second: &[u32]) -> bool {

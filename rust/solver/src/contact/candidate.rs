@@ -3,7 +3,7 @@
 use boucle_geometry::Vector;
 use boucle_geometry::distance::{Closest, edge_edge, point_triangle};
 
-use super::features::{Edge, Triangle};
+use super::features::{Edge, NONE, Triangle};
 
 /// Which features meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +26,10 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
+    /// Of no points.
+    pub(super) const NONE: Self =
+        Self { kind: Kind::PointTriangle, points: [NONE; 4], owned: 0, is_lone: false };
+
     /// A point, lone or not, and a triangle.
     pub(super) fn point_triangle(point: u32, triangle: &Triangle, is_lone: bool) -> Option<Self> {
         let Triangle { points: [a, b, c], owned } = *triangle;

@@ -1,8 +1,6 @@
 //! The points, edges and triangles of cloths or of colliders, and hierarchies of boxes over them.
 
-use boucle_geometry::{Bvh, Mesh, Sweep, Vector};
-
-use super::paths::Paths;
+use boucle_geometry::{Bvh, Mesh, Sweep, Vector, Way};
 
 /// Three points, and which of its corners and edges it speaks for: bit i for corner i, bit 3 + i for the edge from corner i
 /// to the next. Every corner and edge of a mesh has one triangle that does.
@@ -121,25 +119,12 @@ impl Trees {
         }
     }
 
-    /// Fits all boxes to ways, with what a point's body keeps (m) around it.
-    pub(super) fn fit(
-        &mut self,
-        features: &Features,
-        paths: &Paths,
-        around: impl Fn(u32) -> f64 + Sync,
-    ) {
-        let way = |point: u32| (&paths.start[point as usize], &paths.step[point as usize]);
-        self.points.fit(|item| {
-            let point = features.points[item as usize];
-            Sweep::around([way(point)], around(point))
-        });
-        self.edges.fit(|item| {
-            let points = features.edges[item as usize].points;
-            Sweep::around(points.map(way), around(points[0]))
-        });
-        self.triangles.fit(|item| {
-            let points = features.triangles[item as usize].points;
-            Sweep::around(points.map(way), around(points[0]))
-        });
+    /// Fits all boxes to the ways of all points.
+    pub(super) fn fit(&mut self, features: &Features, ways: &[Way]) {
+        let way = |point: u32| &ways[point as usize];
+        let Features { points, edges, triangles } = features;
+        self.points.fit(|item| Sweep::of([way(points[item as usize])]));
+        self.edges.fit(|item| Sweep::of(edges[item as usize].points.map(way)));
+        self.triangles.fit(|item| Sweep::of(triangles[item as usize].points.map(way)));
     }
 }

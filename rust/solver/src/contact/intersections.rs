@@ -31,16 +31,22 @@ impl Contacts {
     pub(super) fn crossings(&self) -> Vec<Crossing> {
         let Self { bodies, cloths, colliders, .. } = self;
         let (own, others) = (&bodies.cloths, &bodies.colliders);
-        let mut found = cloths.edges.pairs_with(&cloths.triangles, |edge, triangle, found| {
-            self.cross(&own.edges[edge as usize], &own.triangles[triangle as usize], found);
+        let mut found = cloths.edges.pairs_with(&cloths.triangles, |pairs, found| {
+            for &[edge, triangle] in pairs {
+                self.cross(&own.edges[edge as usize], &own.triangles[triangle as usize], found);
+            }
         });
-        found.extend(cloths.edges.pairs_with(&colliders.triangles, |edge, triangle, found| {
-            self.cross(&own.edges[edge as usize], &others.triangles[triangle as usize], found);
+        found.extend(cloths.edges.pairs_with(&colliders.triangles, |pairs, found| {
+            for &[edge, triangle] in pairs {
+                self.cross(&own.edges[edge as usize], &others.triangles[triangle as usize], found);
+            }
         }));
-        found.extend(cloths.triangles.pairs_with(&colliders.edges, |triangle, edge, found| {
-            self.cross(&others.edges[edge as usize], &own.triangles[triangle as usize], found);
+        found.extend(cloths.triangles.pairs_with(&colliders.edges, |pairs, found| {
+            for &[triangle, edge] in pairs {
+                self.cross(&others.edges[edge as usize], &own.triangles[triangle as usize], found);
+            }
         }));
-        found
+        found.concat()
     }
 
     fn cross(&self, edge: &Edge, triangle: &Triangle, found: &mut Vec<Crossing>) {
@@ -62,7 +68,7 @@ impl Contacts {
     /// The points of each pair of features that are nearer to each other than the radius of one.
     fn too_near(&self) -> Vec<[u32; 4]> {
         let Self { bodies, paths, .. } = self;
-        self.search(None, |candidate, found| {
+        let found = self.search(None, |candidate, found: &mut Vec<[u32; 4]>| {
             let radius =
                 bodies.body(candidate.points[0]).radius + bodies.body(candidate.points[3]).radius;
             if radius > 0.0 {
@@ -71,7 +77,8 @@ impl Contacts {
                     found.push(candidate.points);
                 }
             }
-        })
+        });
+        found.concat()
     }
 
     /// Particles behind planes.

@@ -14,6 +14,7 @@ mod candidate;
 #[expect(clippy::module_inception, reason = "the module of contact holds the type of one contact")]
 mod contact;
 mod cut;
+mod detection;
 mod features;
 mod friction;
 mod half_space;
@@ -25,19 +26,20 @@ mod recovery;
 mod response;
 mod search;
 mod settling;
+mod sieve;
 #[cfg(test)]
 mod tests;
 mod truncation;
 
-use boucle_geometry::Vector;
-use rayon::prelude::*;
+use boucle_geometry::{Vector, Way};
 
 use crate::cloth::Cloth;
 use crate::collider::Collider;
 use crate::state::Coordinates;
 use bodies::Bodies;
 use candidate::Candidate;
-use contact::{Contact, Near};
+use contact::Contact;
+pub use detection::Detection;
 use features::Trees;
 pub(crate) use matrix::ContactMatrix;
 use paths::Paths;
@@ -55,6 +57,8 @@ pub(crate) struct Contacts {
     cloths: Trees,
     colliders: Trees,
     paths: Paths,
+    /// The same ways in f32, as boxes were last fitted to them.
+    ways: Vec<Way>,
     /// Where all points were (m) when the step began: what slips has slipped from there.
     origins: Vec<Vector>,
     /// Where the colliders' points are (m) at the start and at the end of the frame.
@@ -83,6 +87,7 @@ impl Contacts {
             cloths: Trees::new(&bodies.cloths, &bodies.rest, &bodies.body_of),
             colliders: Trees::new(&bodies.colliders, &bodies.rest, &bodies.body_of),
             paths: Paths::at_rest(&bodies.rest),
+            ways: vec![Way::default(); bodies.rest.len()],
             origins: bodies.rest.clone(),
             frame: [of_colliders.to_vec(), of_colliders.to_vec()],
             near: Vec::new(),
@@ -208,34 +213,6 @@ impl Contacts {
         for (start, step) in colliders {
             *start += std::mem::take(step);
         }
-    }
-
-    /// Finds the contacts on the way to these positions (m), in a step of h' seconds, and what to watch there.
-    pub(crate) fn detect(&mut self, ends: &Coordinates, inverse_masses: &[f64], h: f64) {
-        self.paths.set_ends(ends);
-        self.expected.copy_from_slice(&self.paths.step);
-        self.is_safe = false;
-        self.fit(|body| body.radius + body.thickness);
-        let Self { bodies, paths, .. } = &*self;
-        let found = self.search(None, |candidate, found| {
-            let near = Near::new(&candidate, bodies, paths);
-            let contact = near.contact(&candidate, bodies);
-            if contact.is_some() || near.is_to_be_watched() {
-                found.push((candidate, contact));
-            }
-        });
-        let mut contacts: Vec<Contact> = found.iter().filter_map(|(_, contact)| *contact).collect();
-        contacts.extend(self.parting());
-        self.watched = found.into_iter().map(|(candidate, _)| candidate).collect();
-        self.each_plane(|particle, plane, normal| {
-            let points = [particle, plane.points[0]];
-            contacts.extend(Contact::with_plane(points, normal, &self.bodies, &self.paths));
-        });
-        contacts.par_iter_mut().for_each(|contact| contact.stiffen(inverse_masses, h));
-        self.near = contacts;
-        self.matrix.join(&self.near, inverse_masses);
-        self.pressures.clear();
-        self.pressures.resize(self.near.len(), Pressure::default());
     }
 
     /// Calls `visit` with each particle and each plane that it may touch, and the plane's normal at the end of the step.

@@ -1,34 +1,45 @@
 //! Which features may meet: points with triangles, edges with edges.
 
-use boucle_geometry::Bvh;
+use boucle_geometry::{Bvh, Way};
+use rayon::prelude::*;
 
 use super::bodies::{Bodies, Body};
 use super::candidate::Candidate;
 use super::features::{Edge, Features, Triangle};
+use super::sieve::Sieve;
 use super::{Contacts, Trees};
+
+/// Points that one task fits, at the least.
+const POINTS: usize = 1024;
 
 impl Contacts {
     /// Fits all boxes to the present ways, with so much (m) around each feature of a body.
     pub(super) fn fit(&mut self, around: impl Fn(&Body) -> f64 + Sync) {
-        let Self { bodies, cloths, colliders, paths, .. } = self;
-        let around = |point: u32| around(bodies.body(point));
-        cloths.fit(&bodies.cloths, paths, around);
-        colliders.fit(&bodies.colliders, paths, around);
+        let Self { bodies, cloths, colliders, paths, ways, .. } = self;
+        let points = paths.start.par_iter().zip(&paths.step).zip(&bodies.body_of);
+        let points = ways.par_iter_mut().zip(points).with_min_len(POINTS);
+        points.for_each(|(way, ((start, step), body))| {
+            *way = Way::new(start, step, around(&bodies.each[*body as usize]));
+        });
+        cloths.fit(&bodies.cloths, ways);
+        colliders.fit(&bodies.colliders, ways);
     }
 
-    /// Calls `visit` for each candidate; for those with a changed point only, if it is said which are.
-    pub(super) fn search<T: Send>(
+    /// Shows `visit` each candidate that may come as near on its way as boxes were fitted around both features, each once,
+    /// with what its task has found so far; only those with a changed point, if it is said which are. Returns the findings
+    /// of all tasks in order.
+    pub(super) fn search<T: Default + Send>(
         &self,
         is_changed: Option<&[bool]>,
-        visit: impl Fn(Candidate, &mut Vec<T>) + Sync,
+        visit: impl Fn(Candidate, &mut T) + Sync,
     ) -> Vec<T> {
-        let Self { bodies, cloths, colliders, tangle, .. } = self;
-        let visit = |candidate: Candidate, found: &mut Vec<T>| {
-            if !tangle.lets_go(&candidate) {
+        let Self { bodies, cloths, colliders, ways, tangle, .. } = self;
+        let visit = |candidate: Candidate, found: &mut T| {
+            if bodies.candidate_may_touch(&candidate) && !tangle.lets_go(&candidate) {
                 visit(candidate, found);
             }
         };
-        let search = Search { bodies, cloths, colliders, is_changed, visit };
+        let search = Search { bodies, cloths, colliders, ways, is_changed, visit };
         let mut found = search.points_and_triangles_of_cloths();
         found.extend(search.edges_of_cloths());
         found.extend(search.points_of_cloths_and_triangles_of_colliders());
@@ -42,45 +53,45 @@ struct Search<'a, V> {
     bodies: &'a Bodies,
     cloths: &'a Trees,
     colliders: &'a Trees,
+    ways: &'a [Way],
     is_changed: Option<&'a [bool]>,
     visit: V,
 }
 
 impl<V> Search<'_, V> {
-    fn point_triangle<T>(&self, point: u32, triangle: &Triangle, found: &mut Vec<T>)
-    where
-        V: Fn(Candidate, &mut Vec<T>),
+    /// Shows what the sieve leaves of pairs of a point and a triangle.
+    fn points_and_triangles<'b, T>(
+        &self,
+        pairs: impl Iterator<Item = (u32, &'b Triangle)>,
+        found: &mut T,
+    ) where
+        V: Fn(Candidate, &mut T),
     {
-        let is_particle = self.bodies.is_particle(point);
-        let is_lone = !is_particle && self.bodies.body(point).radius > 0.0;
-        let Some(candidate) = Candidate::point_triangle(point, triangle, is_lone) else { return };
-        let may_touch = if is_particle {
-            self.bodies.may_touch(&[point], &triangle.points)
-        } else {
-            self.bodies.may_touch(&triangle.points, &[point])
-        };
-        if may_touch {
-            (self.visit)(candidate, found);
-        }
+        let candidates = pairs.filter_map(|(point, triangle)| {
+            let is_lone = !self.bodies.is_particle(point) && self.bodies.body(point).radius > 0.0;
+            Candidate::point_triangle(point, triangle, is_lone)
+        });
+        Sieve::sift(self.ways, candidates, |each| (self.visit)(each, found));
     }
 
-    fn edge_edge<T>(&self, first: &Edge, second: &Edge, found: &mut Vec<T>)
+    /// Shows what the sieve leaves of pairs of edges.
+    fn edges_and_edges<'b, T>(&self, pairs: impl Iterator<Item = [&'b Edge; 2]>, found: &mut T)
     where
-        V: Fn(Candidate, &mut Vec<T>),
+        V: Fn(Candidate, &mut T),
     {
-        let is_lone = self.bodies.body(second.points[0]).radius > 0.0;
-        let Some(candidate) = Candidate::edge_edge(first, second, is_lone) else { return };
-        if self.bodies.may_touch(&first.points, &second.points) {
-            (self.visit)(candidate, found);
-        }
+        let candidates = pairs.filter_map(|[first, second]| {
+            let is_lone = self.bodies.body(second.points[0]).radius > 0.0;
+            Candidate::edge_edge(first, second, is_lone)
+        });
+        Sieve::sift(self.ways, candidates, |each| (self.visit)(each, found));
     }
 
     /// The pairs of items of two hierarchies; of those of which the first is marked by what has changed, if it is said.
-    fn between<T: Send>(
+    fn between<T: Default + Send>(
         &self,
         [first, second]: [&Bvh; 2],
         is_marked: impl Fn(u32, &[bool]) -> bool + Sync,
-        visit: impl Fn(u32, u32, &mut Vec<T>) + Sync,
+        visit: impl Fn(&[[u32; 2]], &mut T) + Sync,
     ) -> Vec<T> {
         match self.is_changed {
             None => first.pairs_with(second, visit),
@@ -90,40 +101,46 @@ impl<V> Search<'_, V> {
         }
     }
 
-    fn points_and_triangles_of_cloths<T: Send>(&self) -> Vec<T>
+    fn points_and_triangles_of_cloths<T: Default + Send>(&self) -> Vec<T>
     where
-        V: Fn(Candidate, &mut Vec<T>) + Sync,
+        V: Fn(Candidate, &mut T) + Sync,
     {
         let Features { points, triangles, .. } = &self.bodies.cloths;
         let [by_point, by_triangle] = [&self.cloths.points, &self.cloths.triangles];
-        let point_of = |item: u32| points[item as usize];
-        let visit = |point: u32, triangle: u32, found: &mut Vec<T>| {
-            self.point_triangle(point_of(point), &triangles[triangle as usize], found);
-        };
-        let is_point_marked = |item: u32, is_changed: &[bool]| is_changed[point_of(item) as usize];
-        let mut found = self.between([by_point, by_triangle], is_point_marked, visit);
+        let pair =
+            |point: u32, triangle: u32| (points[point as usize], &triangles[triangle as usize]);
+        let is_point_marked =
+            |item: u32, is_changed: &[bool]| is_changed[points[item as usize] as usize];
+        let mut found = self.between([by_point, by_triangle], is_point_marked, |pairs, found| {
+            self.points_and_triangles(
+                pairs.iter().map(|&[point, triangle]| pair(point, triangle)),
+                found,
+            );
+        });
         // Changed triangles meet points that have not changed, too.
         if let Some(is_changed) = self.is_changed {
             found.extend(by_triangle.pairs_of_marked_with(
                 |item| is_marked(&triangles[item as usize].points, is_changed),
                 by_point,
-                |triangle, point, found| {
-                    if !is_point_marked(point, is_changed) {
-                        visit(point, triangle, found);
-                    }
+                |pairs, found| {
+                    let pairs =
+                        pairs.iter().filter(|&[_, point]| !is_point_marked(*point, is_changed));
+                    let pairs = pairs.map(|&[triangle, point]| pair(point, triangle));
+                    self.points_and_triangles(pairs, found);
                 },
             ));
         }
         found
     }
 
-    fn edges_of_cloths<T: Send>(&self) -> Vec<T>
+    fn edges_of_cloths<T: Default + Send>(&self) -> Vec<T>
     where
-        V: Fn(Candidate, &mut Vec<T>) + Sync,
+        V: Fn(Candidate, &mut T) + Sync,
     {
         let edges = &self.bodies.cloths.edges;
-        let visit = |first: u32, second: u32, found: &mut Vec<T>| {
-            self.edge_edge(&edges[first as usize], &edges[second as usize], found);
+        let visit = |pairs: &[[u32; 2]], found: &mut T| {
+            let pairs = pairs.iter().map(|pair| pair.map(|edge| &edges[edge as usize]));
+            self.edges_and_edges(pairs, found);
         };
         match self.is_changed {
             None => self.cloths.edges.pairs(visit),
@@ -134,47 +151,53 @@ impl<V> Search<'_, V> {
         }
     }
 
-    fn points_of_cloths_and_triangles_of_colliders<T: Send>(&self) -> Vec<T>
+    fn points_of_cloths_and_triangles_of_colliders<T: Default + Send>(&self) -> Vec<T>
     where
-        V: Fn(Candidate, &mut Vec<T>) + Sync,
+        V: Fn(Candidate, &mut T) + Sync,
     {
         let Bodies { cloths, colliders, .. } = self.bodies;
         self.between(
             [&self.cloths.points, &self.colliders.triangles],
             |item, is_changed| is_changed[cloths.points[item as usize] as usize],
-            |point, triangle, found| {
-                let triangle = &colliders.triangles[triangle as usize];
-                self.point_triangle(cloths.points[point as usize], triangle, found);
+            |pairs, found| {
+                let pairs = pairs.iter().map(|&[point, triangle]| {
+                    (cloths.points[point as usize], &colliders.triangles[triangle as usize])
+                });
+                self.points_and_triangles(pairs, found);
             },
         )
     }
 
-    fn triangles_of_cloths_and_points_of_colliders<T: Send>(&self) -> Vec<T>
+    fn triangles_of_cloths_and_points_of_colliders<T: Default + Send>(&self) -> Vec<T>
     where
-        V: Fn(Candidate, &mut Vec<T>) + Sync,
+        V: Fn(Candidate, &mut T) + Sync,
     {
         let Bodies { cloths, colliders, .. } = self.bodies;
         self.between(
             [&self.cloths.triangles, &self.colliders.points],
             |item, is_changed| is_marked(&cloths.triangles[item as usize].points, is_changed),
-            |triangle, point, found| {
-                let triangle = &cloths.triangles[triangle as usize];
-                self.point_triangle(colliders.points[point as usize], triangle, found);
+            |pairs, found| {
+                let pairs = pairs.iter().map(|&[triangle, point]| {
+                    (colliders.points[point as usize], &cloths.triangles[triangle as usize])
+                });
+                self.points_and_triangles(pairs, found);
             },
         )
     }
 
-    fn edges_of_cloths_and_colliders<T: Send>(&self) -> Vec<T>
+    fn edges_of_cloths_and_colliders<T: Default + Send>(&self) -> Vec<T>
     where
-        V: Fn(Candidate, &mut Vec<T>) + Sync,
+        V: Fn(Candidate, &mut T) + Sync,
     {
         let Bodies { cloths, colliders, .. } = self.bodies;
         self.between(
             [&self.cloths.edges, &self.colliders.edges],
             |item, is_changed| is_marked(&cloths.edges[item as usize].points, is_changed),
-            |first, second, found| {
-                let second = &colliders.edges[second as usize];
-                self.edge_edge(&cloths.edges[first as usize], second, found);
+            |pairs, found| {
+                let pairs = pairs.iter().map(|&[first, second]| {
+                    [&cloths.edges[first as usize], &colliders.edges[second as usize]]
+                });
+                self.edges_and_edges(pairs, found);
             },
         )
     }

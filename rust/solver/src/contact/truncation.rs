@@ -98,9 +98,10 @@ impl Contacts {
             // Pairs with a point that has changed and one that is astray: all are found from the fewer of both.
             let count = |marks: &[bool]| marks.iter().filter(|is_marked| **is_marked).count();
             let marks = if count(&is_astray) < count(is_changed) { &is_astray } else { is_changed };
-            cuts.extend(self.search(Some(marks), |candidate, found| {
+            let found = self.search(Some(marks), |candidate, found: &mut Vec<Cut>| {
                 found.extend(cut(&candidate, bodies, paths));
-            }));
+            });
+            cuts.extend(found.into_iter().flatten());
         }
         cuts
     }

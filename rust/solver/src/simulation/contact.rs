@@ -3,7 +3,9 @@
 use boucle_geometry::Vector;
 
 use super::Simulation;
+use crate::awake::with_others_awake;
 use crate::collider::Collider;
+use crate::contact::Detection;
 use crate::error::Result;
 
 impl Simulation {
@@ -32,6 +34,32 @@ impl Simulation {
         let before = self.colliders[..collider].iter().map(|collider| collider.positions.len());
         self.contacts.aim(before.sum(), targets);
         Ok(())
+    }
+
+    /// Finds what would touch over the next step if all went on with the velocity they have, without moving: the contacts
+    /// that [`Self::vertex_contacts`] speaks of are then those. `None` if nothing can touch.
+    ///
+    /// # Errors
+    /// As [`Self::advance`]: when the next frame has no allowed number of steps.
+    pub fn detect_contacts(&mut self) -> Result<Option<Detection>> {
+        let substeps = self.plan()?;
+        if self.contacts.is_empty() {
+            return Ok(None);
+        }
+        let h = self.frame_duration() / f64::from(substeps);
+        let Self { contacts, system, state, threads, .. } = self;
+        let mut ends = state.position.clone();
+        for (ends, velocities) in ends.0.iter_mut().zip(&state.velocity.0) {
+            for (end, velocity) in ends.iter_mut().zip(velocities.iter()) {
+                *end += h * velocity;
+            }
+        }
+        Ok(Some(threads.install(|| {
+            with_others_awake(usize::MAX, || {
+                contacts.start_step([0, 1], substeps, &state.position);
+                contacts.detect(&ends, &system.inverse_masses, h)
+            })
+        })))
     }
 
     /// The force (N) with which contacts press each vertex of a cloth, as the last step of a frame leaves them.

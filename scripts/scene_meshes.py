@@ -97,7 +97,7 @@ def lathe(sides: int, profile: list[tuple[float, float]]) -> Mesh:
     return mesh
 
 
-def tube(sides: int, rows: int, radius: float = 0.15, length: float = 2.0) -> Mesh:
+def tube(sides: int, rows: int, radius: float = 0.05, length: float = 2.0) -> Mesh:
     """A cylinder about the z axis, its middle at the origin."""
     return lathe(sides, [(radius, length * (row / rows - 0.5)) for row in range(rows + 1)])
 
@@ -148,11 +148,11 @@ def cache(mesh: Mesh) -> bytes:
 def files(full: bool) -> dict[str, bytes]:
     """Every file by its name."""
     if full:
-        return {"tube_full.obj": tube(192, 256).text().encode()}
+        return {"tube_full.obj": tube(64, 256).text().encode()}
     body = ball()
     return {
         "needles.obj": needles().text().encode(),
-        "tube.obj": tube(24, 32).text().encode(),
+        "tube.obj": tube(16, 48).text().encode(),
         "funnel.obj": funnel().text().encode(),
         "body.obj": body.text().encode(),
         "body.pc2": cache(body),

@@ -1,6 +1,6 @@
 //! One substep: a table of contents.
 
-use crate::contact::Contacts;
+use crate::contact::{Contacts, Walls};
 use crate::implicit::Implicit;
 use crate::limit::Limit;
 use crate::method::Method;
@@ -19,7 +19,7 @@ const PULLS: usize = 4;
 const SWEEPS_AFTER_PULL: usize = 480;
 
 /// How often limiters and contacts take turns at the end of a frame, until both hold.
-const TURNS: usize = 8;
+const TURNS: usize = 16;
 
 /// More steps are taken if one cuts the ways of more than one in so many particles short.
 const MANY: usize = 20;
@@ -66,13 +66,14 @@ impl Step<'_> {
         if !meets {
             return true;
         }
+        contacts.forget_walls();
         let mut clipped = contacts.truncate(&mut state.position);
         let is_short = contacts.clipped_in_step() as usize * MANY <= self.system.particle_count();
         for _ in 0..if is_last { TURNS } else { 0 } {
             if clipped == 0 && is_held {
                 break;
             }
-            is_held = self.hold(state, limits, SWEEPS_AFTER_PULL, true);
+            is_held = self.hold(state, limits, SWEEPS_AFTER_PULL, Some(contacts.walls()));
             clipped = contacts.truncate(&mut state.position);
         }
         is_short && (!is_last || is_held && clipped == 0)
@@ -93,7 +94,7 @@ impl Step<'_> {
                 }
                 true
             }
-            Method::Implicit(_) if !is_last => self.hold(state, limits, SWEEPS, false),
+            Method::Implicit(_) if !is_last => self.hold(state, limits, SWEEPS, None),
             Method::Implicit(implicit) => self.hold_at_end(state, implicit, limits),
         }
     }
@@ -105,27 +106,30 @@ impl Step<'_> {
         implicit: &mut Implicit,
         limits: &mut [Limit],
     ) -> bool {
-        let mut is_held = self.hold(state, limits, SWEEPS_AT_END, false);
+        let mut is_held = self.hold(state, limits, SWEEPS_AT_END, None);
         for _ in 0..PULLS {
             if is_held || !implicit.pull(self.system, state) {
                 break;
             }
-            is_held = self.hold(state, limits, SWEEPS_AFTER_PULL, true);
+            is_held = self.hold(state, limits, SWEEPS_AFTER_PULL, Some(&Walls::default()));
         }
         is_held
     }
 
-    /// Applies the limiters; `is_again` those only that promise to hold their edges.
+    /// Applies the limiters; again only those that promise to hold their edges, within walls.
     fn hold(
         &self,
         state: &mut State,
         limits: &mut [Limit],
         most_sweeps: usize,
-        is_again: bool,
+        again_within: Option<&Walls>,
     ) -> bool {
-        let limits = limits.iter_mut().filter(|limit| !is_again || limit.promises());
+        let inverse_masses = &self.system.inverse_masses;
+        let limits = limits.iter_mut().filter(|limit| again_within.is_none() || limit.promises());
+        let nowhere = Walls::default();
+        let walls = again_within.unwrap_or(&nowhere);
         let is_held =
-            |limit: &mut Limit| limit.hold(state, &self.system.inverse_masses, self.h, most_sweeps);
+            |limit: &mut Limit| limit.hold(state, inverse_masses, self.h, most_sweeps, walls);
         limits.map(is_held).fold(true, |all, held| all & held)
     }
 }

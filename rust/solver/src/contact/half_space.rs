@@ -2,6 +2,8 @@
 
 use boucle_geometry::Vector;
 
+use crate::state::Coordinates;
+
 /// A half-space `n·x >= offset` in which a point must end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HalfSpace {
@@ -9,6 +11,52 @@ pub(super) struct HalfSpace {
     pub(super) normal: Vector,
     /// m.
     pub(super) offset: f64,
+}
+
+/// Where particles may go that have been cut short: what else moves them keeps to it.
+#[derive(Debug, Default)]
+pub(crate) struct Walls {
+    /// In the order of their points.
+    half_spaces: Vec<HalfSpace>,
+    /// Of all particles, which have half-spaces and which stay where they are; empty without walls.
+    has_walls: Vec<bool>,
+    is_stopped: Vec<bool>,
+}
+
+impl Walls {
+    /// Adds half-spaces, and those of all particles that stay where they are.
+    pub(super) fn add(&mut self, half_spaces: Vec<HalfSpace>, is_stopped: &[bool]) {
+        self.has_walls.resize(is_stopped.len(), false);
+        self.is_stopped.resize(is_stopped.len(), false);
+        for (kept, is_stopped) in self.is_stopped.iter_mut().zip(is_stopped) {
+            *kept |= is_stopped;
+        }
+        for half_space in &half_spaces {
+            self.has_walls[half_space.point as usize] = true;
+        }
+        self.half_spaces.extend(half_spaces);
+        self.half_spaces.sort_by_key(|half_space| half_space.point);
+    }
+
+    /// Whether a particle stays where it is.
+    pub(crate) fn stop(&self, particle: usize) -> bool {
+        self.is_stopped.get(particle) == Some(&true)
+    }
+
+    /// Puts a particle back into its half-spaces, one after the other.
+    pub(crate) fn keep(&self, particle: usize, positions: &mut Coordinates) {
+        if self.has_walls.get(particle) != Some(&true) {
+            return;
+        }
+        let first = self.half_spaces.partition_point(|each| (each.point as usize) < particle);
+        let own = self.half_spaces[first..].iter();
+        let mut place = positions.get(particle);
+        for HalfSpace { normal, offset, .. } in own.take_while(|own| own.point as usize == particle)
+        {
+            place += normal * (offset - normal.dot(&place)).max(0.0);
+        }
+        positions.set(particle, &place);
+    }
 }
 
 /// Sweeps over the half-spaces of a point: sliding along two of them takes a few.

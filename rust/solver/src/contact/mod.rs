@@ -41,6 +41,7 @@ use candidate::Candidate;
 use contact::Contact;
 pub use detection::Detection;
 use features::Trees;
+pub(crate) use half_space::Walls;
 pub(crate) use matrix::ContactMatrix;
 use paths::Paths;
 use pressing::Pressure;
@@ -71,6 +72,8 @@ pub(crate) struct Contacts {
     expected: Vec<Vector>,
     /// Whether the present ways are free of intersections.
     is_safe: bool,
+    /// What ways were cut short by.
+    walls: Walls,
     pub(crate) matrix: ContactMatrix,
     /// What each contact does at the present guess.
     pressures: Vec<Pressure>,
@@ -95,6 +98,7 @@ impl Contacts {
             watched: Vec::new(),
             expected: vec![Vector::zeros(); bodies.rest.len()],
             is_safe: false,
+            walls: Walls::default(),
             matrix: ContactMatrix::default(),
             pressures: Vec::new(),
             clipped: 0,
@@ -123,7 +127,16 @@ impl Contacts {
         std::mem::take(&mut self.clipped)
     }
 
-    /// The same in the present step so far.
+    /// What ways have been cut short by since it was forgotten.
+    pub(crate) fn walls(&self) -> &Walls {
+        &self.walls
+    }
+
+    pub(crate) fn forget_walls(&mut self) {
+        self.walls = Walls::default();
+    }
+
+    /// Vertices whose way was cut short in the present step so far, once for each cut.
     pub(crate) fn clipped_in_step(&self) -> u32 {
         self.clipped - self.clipped_before
     }

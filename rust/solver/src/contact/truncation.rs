@@ -57,6 +57,7 @@ impl Contacts {
             }
         }
         self.is_safe = true;
+        self.walls.add(cutting.half_spaces, &cutting.is_stopped);
         self.write_ends(&cutting.wanted, ends)
     }
 

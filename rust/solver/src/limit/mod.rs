@@ -11,6 +11,7 @@ pub(crate) use project::Project;
 pub(crate) use provot::Provot;
 
 use crate::cloth::Cloth;
+use crate::contact::Walls;
 use crate::material::Limiter;
 use crate::state::State;
 
@@ -45,20 +46,21 @@ impl Limit {
     }
 
     /// Moves ends that are too far apart after an implicit step, which has already held them as well as it can, in so
-    /// many sweeps at the most, and says whether all are held now.
+    /// many sweeps at the most and within walls, and says whether all are held now.
     pub(crate) fn hold(
         &mut self,
         state: &mut State,
         inverse_masses: &[f64],
         h: f64,
         most_sweeps: usize,
+        walls: &Walls,
     ) -> bool {
         match self {
             Self::Provot(limit) => {
                 limit.apply(state, inverse_masses, h);
                 true
             }
-            Self::Project(limit) => limit.hold(state, inverse_masses, most_sweeps),
+            Self::Project(limit) => limit.hold(state, inverse_masses, most_sweeps, walls),
         }
     }
 

@@ -19,6 +19,7 @@
 
 use super::order::{Edge, outward};
 use crate::cloth::Cloth;
+use crate::contact::Walls;
 use crate::material::SpringKind;
 use crate::state::State;
 
@@ -128,7 +129,7 @@ impl Project {
             }
         }
         if is_last {
-            self.project(state, inverse_masses, SWEEPS_AT_END);
+            self.project(state, inverse_masses, SWEEPS_AT_END, &Walls::default());
         }
         self.now.clear();
     }
@@ -139,11 +140,12 @@ impl Project {
         state: &mut State,
         inverse_masses: &[f64],
         most_sweeps: usize,
+        walls: &Walls,
     ) -> bool {
         if !self.find_too_long(state) {
             return true;
         }
-        let is_held = self.project(state, inverse_masses, most_sweeps);
+        let is_held = self.project(state, inverse_masses, most_sweeps, walls);
         self.now.clear();
         is_held
     }
@@ -185,10 +187,16 @@ impl Project {
     }
 
     /// Moves the ends of edges that are still too long.
-    fn project(&mut self, state: &mut State, inverse_masses: &[f64], most: usize) -> bool {
+    fn project(
+        &mut self,
+        state: &mut State,
+        inverse_masses: &[f64],
+        most: usize,
+        walls: &Walls,
+    ) -> bool {
         for sweep in 0..most {
             let evenness = METRICS[sweep / SWEEPS_OF_A_METRIC % METRICS.len()];
-            self.sweep_positions(state, inverse_masses, evenness);
+            self.sweep_positions(state, inverse_masses, evenness, walls);
             std::mem::swap(&mut self.now, &mut self.later);
             if self.now.is_empty() {
                 break;
@@ -220,7 +228,13 @@ impl Project {
     }
 
     /// Takes the marked edges outward; marks for later those farther in that a move has touched.
-    fn sweep_positions(&mut self, state: &mut State, inverse_masses: &[f64], evenness: Evenness) {
+    fn sweep_positions(
+        &mut self,
+        state: &mut State,
+        inverse_masses: &[f64],
+        evenness: Evenness,
+        walls: &Walls,
+    ) {
         let mut rank = 0;
         while let Some(next) = self.now.take_from(rank) {
             rank = next;
@@ -235,7 +249,8 @@ impl Project {
                 Evenness::Even => 1.0,
             };
             let edge = Edge { nearness, ..edge };
-            let Some([give_near, give_far]) = shares(&edge, near, far, inverse_masses) else {
+            let inverse_mass = |end: usize| if walls.stop(end) { 0.0 } else { inverse_masses[end] };
+            let Some([give_near, give_far]) = shares(&edge, [near, far].map(inverse_mass)) else {
                 continue;
             };
             let length = state.position.distance_squared(near as u32, far as u32).sqrt();
@@ -244,6 +259,9 @@ impl Project {
                 let span = axis[far] - axis[near];
                 axis[near] += give_near * back * span;
                 axis[far] -= give_far * back * span;
+            }
+            for end in [near, far] {
+                walls.keep(end, &mut state.position);
             }
             self.moved.insert(rank);
             for touched in self.touched(&edge) {
@@ -260,7 +278,8 @@ impl Project {
             rank = next;
             let edge = self.edges[rank];
             let [near, far] = [edge.near, edge.far].map(|end| (self.base + end) as usize);
-            let Some(outward) = shares(&edge, near, far, inverse_masses) else { continue };
+            let inverse_masses = [near, far].map(|end| inverse_masses[end]);
+            let Some(outward) = shares(&edge, inverse_masses) else { continue };
             let normal = (state.position.get(far) - state.position.get(near)).normalize();
             let [near_speed, far_speed] =
                 [near, far].map(|end| state.velocity.get(end).dot(&normal));
@@ -268,8 +287,8 @@ impl Project {
             if !(separation > 0.0) {
                 continue;
             }
-            let [wn, wf] = [inverse_masses[near], inverse_masses[far]];
-            let [qn, qf] = if adds_energy(outward, [wn, wf], near_speed, far_speed) {
+            let [wn, wf] = inverse_masses;
+            let [qn, qf] = if adds_energy(outward, inverse_masses, near_speed, far_speed) {
                 [wn / (wn + wf), wf / (wn + wf)]
             } else {
                 outward
@@ -283,8 +302,8 @@ impl Project {
 }
 
 /// By which parts of a correction the two ends of an edge give way; none if both are pinned.
-fn shares(edge: &Edge, near: usize, far: usize, inverse_masses: &[f64]) -> Option<[f64; 2]> {
-    let weights = [edge.nearness * inverse_masses[near], inverse_masses[far]];
+fn shares(edge: &Edge, [near, far]: [f64; 2]) -> Option<[f64; 2]> {
+    let weights = [edge.nearness * near, far];
     let sum = weights[0] + weights[1];
     (sum > 0.0).then(|| weights.map(|weight| weight / sum))
 }

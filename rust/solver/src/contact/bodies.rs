@@ -10,6 +10,7 @@ use crate::collider::{Collider, Shape};
 use crate::collision::Collision;
 
 use super::candidate::{Candidate, Kind};
+use super::enclosure;
 use super::exclusion::Exclusion;
 use super::features::Features;
 
@@ -21,6 +22,8 @@ pub(super) struct Body {
     /// What is kept free (m) around that.
     pub(super) thickness: f64,
     pub(super) friction: f64,
+    /// 1 if it is a closed mesh whose faces are seen from outside, -1 if from inside, 0 if it is none.
+    pub(super) facing: f64,
     /// Whether it collides with itself.
     with_self: bool,
 }
@@ -88,6 +91,7 @@ impl Bodies {
             radius: 0.0,
             thickness: collision.thickness,
             friction: collision.friction,
+            facing: 0.0,
             with_self: collision.with_self,
         });
         let lists = [&collision.excluded_from_self, &collision.excluded_from_colliders];
@@ -114,7 +118,12 @@ impl Bodies {
         let (body, base) = (self.each.len() as u32, self.rest.len() as u32);
         self.rest.extend_from_slice(&collider.positions);
         self.body_of.resize(self.rest.len(), body);
+        let facing = match &collider.shape {
+            Shape::Mesh(mesh) => enclosure::facing(mesh, &collider.positions),
+            _ => 0.0,
+        };
         self.each.push(Body {
+            facing,
             radius: collider.shape.radius(),
             thickness: collider.thickness,
             friction: collider.friction,

@@ -35,6 +35,9 @@ const OF_REST: f64 = 0.9;
 /// What is inside a body comes out by this part of its depth a step, and by half a thickness at the least.
 const OUT: f64 = 0.05;
 
+/// What is inside or tangled comes out at most so fast (m/s), however short the steps are: it must not fly away.
+const FASTEST: f64 = 1.0;
+
 /// Distances (m) below this have no direction.
 const NOWHERE: f64 = 1e-12;
 
@@ -179,6 +182,9 @@ impl Contact {
 
     /// Takes its stiffness from the masses that it feels, for a step of h' seconds.
     pub(super) fn stiffen(&mut self, inverse_masses: &[f64], h: f64) {
+        if self.distance <= 0.0 {
+            self.reach = self.reach.min(self.distance + FASTEST * h);
+        }
         let shares = self.points.iter().zip(&self.weights).map(|(&point, weight)| {
             inverse_masses.get(point as usize).map_or(0.0, |inverse| inverse * weight * weight)
         });

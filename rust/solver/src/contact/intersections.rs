@@ -7,7 +7,7 @@ use boucle_geometry::{Vector, edge_crosses_triangle};
 
 use super::Contacts;
 use super::features::{Edge, Triangle};
-use super::recovery::{Crossing, Tangle};
+use super::recovery::Crossing;
 use crate::state::Coordinates;
 
 impl Contacts {
@@ -16,7 +16,7 @@ impl Contacts {
         let first = self.bodies.particle_count;
         self.paths.start[first..].copy_from_slice(&self.frame[0]);
         self.stand_still(positions);
-        self.tangle = Tangle::of(self.crossings(), self.bodies.rest.len());
+        self.tangle = self.find_tangle();
         (self.tangle.crossings.len() + self.too_near().len() + self.behind_planes().len()) as u64
     }
 

@@ -13,7 +13,7 @@
 //!
 //! A contour across two whole sheets does not get shorter wherever it goes. Two cloths therefore part along the normal of
 //! the triangle, each to the side on which its middle lies: the contour then travels to the nearer end. So do surfaces that
-//! lie in each other and have no contour.
+//! lie in each other and have no contour. What lies inside a closed body leaves it as one ([`super::enclosure`]).
 //!
 //! Source: Volino & Magnenat-Thalmann 2006.
 
@@ -24,6 +24,7 @@ use super::Contacts;
 use super::bodies::Bodies;
 use super::candidate::Candidate;
 use super::contact::Contact;
+use super::enclosure::Region;
 use super::features::{Edge, NONE, Triangle};
 use super::paths::Paths;
 use crate::state::Coordinates;
@@ -45,22 +46,27 @@ pub(super) struct Crossing {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tangle {
     pub(super) crossings: Vec<Crossing>,
-    /// Which points take part in a crossing; empty if none does.
+    regions: Vec<Region>,
+    /// Which points take part in a crossing, or lie in a body, or are of a body that holds such; empty if none are.
     is_tangled: Vec<bool>,
 }
 
 impl Tangle {
-    pub(super) fn of(crossings: Vec<Crossing>, point_count: usize) -> Self {
+    fn of(crossings: Vec<Crossing>, regions: Vec<Region>, body_of: &[u32]) -> Self {
         if crossings.is_empty() {
             return Self::default();
         }
-        let mut is_tangled = vec![false; point_count];
+        let holds = |body: u32| regions.iter().any(|region| region.body == body);
+        let mut is_tangled: Vec<bool> = body_of.iter().map(|&body| holds(body)).collect();
+        for vertex in regions.iter().flat_map(|region| &region.vertices) {
+            is_tangled[*vertex as usize] = true;
+        }
         for Crossing { edge, triangle } in &crossings {
             for &point in edge.points.iter().chain(&triangle.points) {
                 is_tangled[point as usize] = true;
             }
         }
-        Self { crossings, is_tangled }
+        Self { crossings, regions, is_tangled }
     }
 
     /// Whether a candidate is let go.
@@ -80,8 +86,15 @@ impl Contacts {
     pub(super) fn follow_tangle(&mut self, positions: &Coordinates) {
         if !self.tangle.crossings.is_empty() {
             self.stand_still(positions);
-            self.tangle = Tangle::of(self.crossings(), self.bodies.rest.len());
+            self.tangle = self.find_tangle();
         }
+    }
+
+    /// What is tangled where points start.
+    pub(super) fn find_tangle(&self) -> Tangle {
+        let crossings = self.crossings();
+        let regions = self.regions(&crossings);
+        Tangle::of(crossings, regions, &self.bodies.body_of)
     }
 
     /// What pushes tangled features apart.
@@ -91,12 +104,25 @@ impl Contacts {
             return Vec::new();
         }
         let middles = middles(bodies, paths);
-        let parted = tangle.crossings.iter().flat_map(|crossing| {
+        let mut is_inside = vec![false; bodies.particle_count];
+        for vertex in tangle.regions.iter().flat_map(|region| &region.vertices) {
+            is_inside[*vertex as usize] = true;
+        }
+        let takes_part = |&point: &u32| bodies.is_particle(point) && is_inside[point as usize];
+        // What a region takes along needs no push of its own.
+        let free = tangle.crossings.iter().filter(|crossing| {
+            !crossing.edge.points.iter().chain(&crossing.triangle.points).any(takes_part)
+        });
+        let parted = free.flat_map(|crossing| {
             let owners = [crossing.edge.points[0], crossing.triangle.points[0]]
                 .map(|point| bodies.body_of[point as usize] as usize);
             part(crossing, middles[owners[0]] - middles[owners[1]], bodies, paths)
         });
-        parted.collect()
+        let out = tangle.regions.iter().flat_map(|region| {
+            let owners = [region.vertices[0], region.anchor].map(|point| bodies.body(point));
+            region.parting(owners.iter().map(|owner| owner.thickness).sum())
+        });
+        parted.chain(out).collect()
     }
 }
 

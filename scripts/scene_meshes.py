@@ -4,6 +4,8 @@
 - `tube.obj`: a cylinder of cloth, open at both ends
 - `funnel.obj`: a cone that narrows to a pipe, open at both ends
 - `body.obj`, `body.pc2`: a ball that sways and breathes, sampled every second frame
+- `fold.obj`: a sheet folded in two, whose upper half bulges down through the lower
+- `roll.obj`: a sheet that is rolled up so far that its end passes through its beginning
 
 They lie beside the scenes in a small size. `--full` makes what benchmarks need besides: `tube_full.obj`.
 
@@ -121,6 +123,39 @@ def ball(sides: int = 16, rings: int = 9, radius: float = 0.4) -> Mesh:
     return mesh
 
 
+def roll(columns: int = 40, rows: int = 20, radius: float = 0.2, turn: float = 6.9) -> Mesh:
+    """A sheet about the y axis, rolled by more than a full turn (rad): it leans, so that its end crosses its beginning."""
+    mesh = Mesh()
+    for row in range(rows):
+        y = radius * turn * (row / (rows - 1) - 0.5) * rows / columns
+        for column in range(columns):
+            share = column / (columns - 1)
+            x, z = radius * math.cos(turn * share), radius * math.sin(turn * share)
+            mesh.vertices.append((x, y, z + 0.001 * y + 0.02 * (share - 0.5)))
+    quads = [(row * columns + column) for row in range(rows - 1) for column in range(columns - 1)]
+    mesh.faces = [(a, a + 1, a + columns + 1, a + columns) for a in quads]
+    return mesh
+
+
+def fold(columns: int = 49, rows: int = 25, length: float = 1.2, bend: float = 0.03) -> Mesh:
+    """A sheet in the plane z = 0, folded over about the y axis with a bend of a radius."""
+    mesh = Mesh()
+    half = 0.5 * (length - math.pi * bend)
+    for row in range(rows):
+        y = length * (row / (rows - 1) - 0.5) * (rows - 1) / (columns - 1)
+        for column in range(columns):
+            way = length * column / (columns - 1) - half
+            angle = min(max(way / bend, 0.0), math.pi)
+            x = min(way, 0.0) + bend * math.sin(angle) - max(way - math.pi * bend, 0.0)
+            z = bend * (1.0 - math.cos(angle))
+            if angle == math.pi:
+                z -= 0.1 * math.exp(-((x + 0.5 * half) ** 2 + y**2) / 0.01)
+            mesh.vertices.append((x, y, z))
+    quads = [(row * columns + column) for row in range(rows - 1) for column in range(columns - 1)]
+    mesh.faces = [(a, a + 1, a + columns + 1, a + columns) for a in quads]
+    return mesh
+
+
 def swaying(seconds: float) -> Callable[[Point], Point]:
     """Where a point of the body is at a time: it breathes 1 time, and leans 0.5 times, a second."""
     breath = 1.0 + 0.15 * math.sin(2.0 * math.pi * seconds)
@@ -154,6 +189,8 @@ def files(full: bool) -> dict[str, bytes]:
         "needles.obj": needles().text().encode(),
         "tube.obj": tube(16, 48).text().encode(),
         "funnel.obj": funnel().text().encode(),
+        "fold.obj": fold().text().encode(),
+        "roll.obj": roll().text().encode(),
         "body.obj": body.text().encode(),
         "body.pc2": cache(body),
     }

@@ -35,6 +35,16 @@ NAMES = (
     "cs184_self_collision",
 )
 """Scenes in which something touches something."""
+RECOVERIES = (
+    "crossed_sheets",
+    "folded",
+    "rolled",
+    "sheet_in_ball",
+    "sheet_in_box",
+    "pinch",
+    "pinch_boxes",
+)
+"""Scenes that are tangled for a while, and come free."""
 GRACE = 60.0
 """Seconds that a stopped bake has for the frame under way."""
 

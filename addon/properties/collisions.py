@@ -35,7 +35,7 @@ class CollisionProperties:
     )  # fmt: skip
     collision_group: StringProperty(
         name="Vertex Group",
-        description="Vertices of this group do not collide with objects; empty for none",
+        description="Triangles with all vertices in this group do not collide with objects; empty for none",
         default="", options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     collision_collection: PointerProperty(
@@ -51,6 +51,6 @@ class CollisionProperties:
     )  # fmt: skip
     self_collision_group: StringProperty(
         name="Vertex Group",
-        description="Vertices of this group do not collide with the cloth itself; empty for none",
+        description="Triangles with all vertices in this group do not collide with the cloth itself; empty for none",
         default="", options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip

@@ -39,7 +39,6 @@ def self_intersections(sheet: Drop, frames: list[np.ndarray]) -> list[int]:
     counts = []
     for positions in frames:
         counter.set_positions(0, np.ascontiguousarray(positions, np.float64).reshape(-1, 3))
-        counter.restore(counter.checkpoint())  # which counts anew
         counts.append(counter.certificate()["intersections"])
     return counts
 

@@ -11,9 +11,9 @@ pub struct Collision {
     pub thickness: f64,
     /// Coefficient of friction; that of a pair is the geometric mean of both.
     pub friction: f64,
-    /// Vertices that do not collide with their own cloth.
+    /// Triangles with all corners among these vertices do not collide with their own cloth.
     pub excluded_from_self: Vec<u32>,
-    /// Vertices that do not collide with colliders.
+    /// Triangles with all corners among these vertices do not collide with colliders.
     pub excluded_from_colliders: Vec<u32>,
     /// The colliders that it meets, by number; all if `None`.
     pub colliders: Option<Vec<u32>>,

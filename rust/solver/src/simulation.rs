@@ -1,9 +1,9 @@
 //! A simulation as the outside holds it: cloths that move frame by frame.
 
 mod contact;
+mod placing;
 mod plan;
 mod saving;
-mod velocity;
 
 use std::fmt;
 
@@ -193,27 +193,6 @@ impl Simulation {
             particle.checked_sub(base).is_some_and(|vertex| vertices.contains(&vertex))
         });
         self.follow_pins();
-    }
-
-    /// Puts the vertices of a cloth at these positions (m), at rest. Rest lengths stay.
-    pub fn set_positions(&mut self, cloth: usize, positions: &[Vector]) {
-        let base = self.bases[cloth] as usize;
-        for (vertex, position) in
-            positions.iter().enumerate().take(self.cloths[cloth].positions.len())
-        {
-            self.state.position.set(base + vertex, position);
-            self.state.velocity.set(base + vertex, &Vector::zeros());
-        }
-        if let Some(memory) = self.method.memory_mut() {
-            memory.clear();
-        }
-        let state = &self.state;
-        let end = base + self.cloths[cloth].positions.len();
-        self.pins.aim(|particle| {
-            (base..end)
-                .contains(&(particle as usize))
-                .then(|| state.position.get(particle as usize))
-        });
     }
 
     /// Moves on by one frame.

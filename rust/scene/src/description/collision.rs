@@ -54,9 +54,9 @@ pub struct ClothCollision {
     pub thickness: Option<f64>,
     /// Its coefficient of friction.
     pub friction: Option<f64>,
-    /// Vertices that do not collide with their own cloth.
+    /// Triangles with all corners among these vertices do not collide with their own cloth.
     pub excluded_from_self: Vec<u32>,
-    /// Vertices that do not collide with colliders.
+    /// Triangles with all corners among these vertices do not collide with colliders.
     pub excluded_from_colliders: Vec<u32>,
     /// The names of the colliders that it meets; all if missing.
     pub colliders: Option<Vec<String>>,

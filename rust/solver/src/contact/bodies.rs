@@ -9,7 +9,8 @@ use crate::cloth::{Cloth, placed};
 use crate::collider::{Collider, Shape};
 use crate::collision::Collision;
 
-use super::candidate::Candidate;
+use super::candidate::{Candidate, Kind};
+use super::exclusion::Exclusion;
 use super::features::Features;
 
 /// What a cloth or a collider is made of.
@@ -44,8 +45,8 @@ pub(super) struct Bodies {
     pub(super) planes: Vec<Plane>,
     /// Particles at rest (m), and colliders' points at the first frame.
     pub(super) rest: Vec<Vector>,
-    /// Which vertices do not collide with their own cloth, and with colliders.
-    excluded: Vec<[bool; 2]>,
+    /// What does not collide with its own cloth, and with colliders.
+    excluded: [Exclusion; 2],
     /// For each cloth, which colliders it meets.
     meets: Vec<Vec<bool>>,
     /// Whether everything may touch everything.
@@ -63,7 +64,7 @@ impl Bodies {
             colliders: Features::default(),
             planes: Vec::new(),
             rest: Vec::new(),
-            excluded: vec![[false; 2]; particle_count],
+            excluded: [(); 2].map(|()| Exclusion::new(particle_count)),
             meets: Vec::new(),
             all_touch: true,
         };
@@ -89,11 +90,10 @@ impl Bodies {
             friction: collision.friction,
             with_self: collision.with_self,
         });
-        for (kind, vertices) in
-            [&collision.excluded_from_self, &collision.excluded_from_colliders].iter().enumerate()
-        {
-            for vertex in *vertices {
-                self.excluded[(base + vertex) as usize][kind] = true;
+        let lists = [&collision.excluded_from_self, &collision.excluded_from_colliders];
+        for (excluded, vertices) in self.excluded.iter_mut().zip(lists) {
+            if !vertices.is_empty() {
+                excluded.add(&cloth.mesh, base, vertices);
             }
         }
         let mut meets = vec![collision.colliders.is_none(); collider_count];
@@ -165,8 +165,29 @@ impl Bodies {
             None if one == other => (0, self.each[one as usize].with_self),
             None => return true,
         };
-        let is_included =
-            |&point: &u32| self.excluded.get(point as usize).is_none_or(|excluded| !excluded[kind]);
-        meet && first.iter().all(is_included) && second.iter().all(is_included)
+        meet && self.excluded[kind].keeps(first) && self.excluded[kind].keeps(second)
+    }
+
+    /// Whether a candidate speaks for the features that are closest, among those that may touch.
+    pub(super) fn speaks_for(&self, candidate: &Candidate, feature: u8) -> bool {
+        if self.all_touch {
+            return candidate.speaks_for(feature);
+        }
+        let [one, other] =
+            [candidate.points[0], candidate.points[3]].map(|point| self.body_of[point as usize]);
+        let speaker = match candidate.kind {
+            Kind::PointTriangle => &candidate.points[1..],
+            Kind::EdgeEdge => &candidate.points[..2],
+        };
+        let is_among_colliders = (one.max(other) as usize) >= self.meets.len();
+        let owned = match (one == other, is_among_colliders) {
+            (true, _) => self.excluded[0].owned(speaker),
+            (false, true) => self.excluded[1].owned(speaker),
+            (false, false) => None,
+        };
+        match owned {
+            Some(owned) => candidate.speaking_for(owned).speaks_for(feature),
+            None => candidate.speaks_for(feature),
+        }
     }
 }

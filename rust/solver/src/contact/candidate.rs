@@ -72,6 +72,11 @@ impl Candidate {
         }
     }
 
+    /// The same, where its triangle, or its first edge, speaks for something else.
+    pub(super) fn speaking_for(self, owned: u8) -> Self {
+        Self { owned, ..self }
+    }
+
     /// Whether this is the candidate that speaks for the features that are closest: the same vertex or edge is closest in
     /// several triangles, and only the one that owns it counts.
     pub(super) fn speaks_for(&self, feature: u8) -> bool {

@@ -106,7 +106,7 @@ impl Near {
         let Self { closest, normal, distance, nearest, thickness, .. } = *self;
         if nearest >= thickness
             || closest.offset.norm() < NOWHERE
-            || !candidate.speaks_for(closest.feature)
+            || !bodies.speaks_for(candidate, closest.feature)
         {
             return None;
         }

@@ -31,17 +31,18 @@ pub(super) struct Features {
 }
 
 impl Features {
-    /// Adds those of a mesh whose vertices are numbered from `base`: faces as fans around their first corners. Vertices
-    /// without a face are left out.
+    /// Adds those of a mesh whose vertices are numbered from `base`. Vertices without a face are left out.
     pub(super) fn add_mesh(&mut self, mesh: &Mesh, base: u32) {
-        let fans = mesh.faces().flat_map(|corners| {
-            let first = corners[0];
-            corners[1..].windows(2).map(move |pair| [first, pair[0], pair[1]])
-        });
+        let all: Vec<[u32; 3]> = triangles(mesh).collect();
+        self.add_triangles(&all, mesh.vertex_count(), base);
+    }
+
+    /// Adds triangles and what they have, of so many vertices that are numbered from `base`.
+    pub(super) fn add_triangles(&mut self, all: &[[u32; 3]], vertex_count: usize, base: u32) {
         let first = self.triangles.len();
-        let mut is_owned = vec![false; mesh.vertex_count()];
-        let mut sides = Vec::with_capacity(3 * mesh.triangle_count());
-        for (place, corners) in fans.enumerate() {
+        let mut is_owned = vec![false; vertex_count];
+        let mut sides = Vec::with_capacity(3 * all.len());
+        for (place, corners) in all.iter().enumerate() {
             let mut owned = 0;
             for i in 0..3 {
                 let [a, b] = [corners[i], corners[(i + 1) % 3]];
@@ -69,7 +70,7 @@ impl Features {
             }
             edges.push(Edge { points: ends.map(|end| base + end), owned, apexes });
         }
-        let mut used: Vec<u32> = mesh.faces().flatten().map(|vertex| base + vertex).collect();
+        let mut used: Vec<u32> = all.iter().flatten().map(|vertex| base + vertex).collect();
         used.sort_unstable();
         used.dedup();
         points.extend(used);
@@ -83,6 +84,14 @@ impl Features {
         self.points.extend(points);
         self.edges.push(Edge { points, owned: 0b11, apexes: [NONE; 2] });
     }
+}
+
+/// The faces of a mesh as fans around their first corners.
+pub(super) fn triangles(mesh: &Mesh) -> impl Iterator<Item = [u32; 3]> {
+    mesh.faces().flat_map(|corners| {
+        let first = corners[0];
+        corners[1..].windows(2).map(move |pair| [first, pair[0], pair[1]])
+    })
 }
 
 /// A hierarchy of boxes over each kind of feature.

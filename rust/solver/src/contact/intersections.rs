@@ -73,7 +73,8 @@ impl Contacts {
                 bodies.body(candidate.points[0]).radius + bodies.body(candidate.points[3]).radius;
             if radius > 0.0 {
                 let closest = candidate.closest(|point| paths.start[point as usize]);
-                if closest.offset.norm() < radius && candidate.speaks_for(closest.feature) {
+                if closest.offset.norm() < radius && bodies.speaks_for(&candidate, closest.feature)
+                {
                     found.push(candidate.points);
                 }
             }

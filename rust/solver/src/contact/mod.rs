@@ -15,6 +15,7 @@ mod candidate;
 mod contact;
 mod cut;
 mod detection;
+mod exclusion;
 mod features;
 mod friction;
 mod half_space;

@@ -88,23 +88,61 @@ fn a_cloth_meets_the_colliders_of_its_list_and_no_others() {
     }
 }
 
-/// Vertices that no spring holds fall through the floor if they are excluded, and rest on it if they are not.
+/// Three rows of vertices that no spring holds: the triangles between them fall through the floor, and with them the first
+/// two rows, which have no others.
 #[test]
-fn only_vertices_excluded_from_colliders_fall_through_the_floor() {
+fn only_triangles_whose_vertices_are_all_excluded_fall_through_the_floor() {
     for integrator in RULES {
-        let excluded = [0_u32, 9, 35];
         let cloth = with(lifted(0.05, loose()), |collision| {
-            collision.excluded_from_colliders = excluded.to_vec();
+            collision.excluded_from_colliders = (0..24).collect();
         });
         let mut simulation = among(vec![cloth], vec![floor(0.3)], settings(integrator));
         run(&mut simulation, 8);
         for (vertex, x) in simulation.positions(0).iter().enumerate() {
             let is_below = x.z < -0.1;
-            assert_eq!(is_below, excluded.contains(&(vertex as u32)), "{integrator:?}: {vertex}");
+            assert_eq!(is_below, vertex < 16, "{integrator:?}: {vertex}");
             assert!(is_below || x.z > 0.0, "{integrator:?}: {vertex} at {}", x.z);
         }
         assert_eq!(simulation.certificate().intersections, Some(0), "{integrator:?}");
     }
+}
+
+/// Bit for bit as if nothing were excluded, on a ball and on each other.
+#[test]
+fn single_excluded_vertices_collide_as_all_others() {
+    for integrator in RULES {
+        let hash = |excluded: &[u32]| {
+            let cloth = |height: f64| {
+                with(lifted(height, crate::sheets::material([100.0, 20.0, 1.0])), |collision| {
+                    collision.excluded_from_colliders = excluded.to_vec();
+                    collision.excluded_from_self = excluded.to_vec();
+                })
+            };
+            let cloths = vec![cloth(0.13), cloth(0.16)];
+            let obstacle = ball(Vector::zeros(), 0.1, 0.3);
+            let mut simulation = among(cloths, vec![obstacle], settings(integrator));
+            run(&mut simulation, 8);
+            let certificate = simulation.certificate();
+            assert!(certificate.contacts > 0, "{integrator:?}");
+            certificate.hash
+        };
+        assert_eq!(hash(&[0, 9, 27, 36, 63]), hash(&[]), "{integrator:?}");
+    }
+}
+
+#[test]
+fn positions_that_are_set_are_looked_at_for_intersections() {
+    let sheet = |height: f64| lifted(height, SpringMaterial::default());
+    let cloths = vec![sheet(0.1), sheet(0.2)];
+    let mut simulation = among(cloths, vec![floor(0.3)], settings(IntegratorKind::Bdf2));
+    let start = simulation.positions(1);
+    let upright: Vec<Vector> = start.iter().map(|x| Vector::new(x.x, 0.013, 0.2 + x.y)).collect();
+    let counts = [&upright, &start].map(|positions| {
+        simulation.set_positions(1, positions);
+        simulation.certificate().intersections.expect("they collide")
+    });
+    assert!(counts[0] > 0, "they cross");
+    assert_eq!(counts[1], 0, "they do not any more");
 }
 
 /// Two halves of one cloth: loose points that are sent through each other.

@@ -1,0 +1,40 @@
+//! Positions and velocities that are given from outside.
+
+use boucle_geometry::Vector;
+
+use super::Simulation;
+
+impl Simulation {
+    /// Puts the vertices of a cloth at these positions (m), at rest. Rest lengths stay.
+    pub fn set_positions(&mut self, cloth: usize, positions: &[Vector]) {
+        let particles = self.particles(cloth);
+        for (particle, position) in particles.clone().zip(positions) {
+            self.state.position.set(particle, position);
+            self.state.velocity.set(particle, &Vector::zeros());
+        }
+        self.forget_motion();
+        let state = &self.state;
+        self.pins.aim(|particle| {
+            let particle = particle as usize;
+            particles.contains(&particle).then(|| state.position.get(particle))
+        });
+        self.intersect();
+    }
+
+    /// Gives the vertices of a cloth these velocities (m/s); pinned ones follow their targets all the same.
+    pub fn set_velocities(&mut self, cloth: usize, velocities: &[Vector]) {
+        for (particle, velocity) in self.particles(cloth).zip(velocities) {
+            if !self.system.is_pinned(particle) {
+                self.state.velocity.set(particle, velocity);
+            }
+        }
+        self.forget_motion();
+    }
+
+    /// What an implicit integrator remembers is of another motion.
+    fn forget_motion(&mut self) {
+        if let Some(memory) = self.method.memory_mut() {
+            memory.clear();
+        }
+    }
+}

@@ -47,6 +47,11 @@ impl Cut {
         let (Self::Plane { candidate, .. } | Self::Stop { candidate }) = self;
         candidate
     }
+
+    /// Whether it is a plane before something that goes its way whatever comes.
+    pub(super) fn is_before_collider(&self) -> bool {
+        matches!(self, Self::Plane { offsets, .. } if offsets.iter().any(|offset| offset.is_infinite()))
+    }
 }
 
 /// What must be done so that two features do not meet; nothing if they are safe.

@@ -59,6 +59,9 @@ impl Walls {
     }
 }
 
+/// Rounding (m) of a start that lies on the plane of its half-space.
+const ROUNDING: f64 = 1e-12;
+
 /// Sweeps over the half-spaces of a point: sliding along two of them takes a few.
 const SWEEPS: usize = 8;
 
@@ -83,7 +86,8 @@ pub(super) fn end_within(start: &Vector, wanted: Vector, half_spaces: &[HalfSpac
     }
     let part = half_spaces.iter().fold(1.0_f64, |part, HalfSpace { normal, offset, .. }| {
         let [from, to] = [start, &end].map(|place| normal.dot(place) - offset);
-        if to < 0.0 && from >= 0.0 { part.min(from / (from - to)) } else { part }
+        let inside = from.max(0.0);
+        if to < 0.0 && from >= -ROUNDING { part.min(inside / (inside - to)) } else { part }
     });
     start + (end - start) * if part < 1.0 { part * (1.0 - 1e-9) } else { 1.0 }
 }
@@ -109,5 +113,14 @@ mod tests {
         let end = end_within(&Vector::new(1.0, 0.0, 0.0), Vector::new(-5.0, 0.0, 0.0), &planes);
         assert!(planes.iter().all(|plane| plane.normal.dot(&end) >= plane.offset));
         assert!(end.x < 0.5, "{end}");
+    }
+
+    #[test]
+    fn a_point_that_starts_on_a_plane_but_for_rounding_stays_before_it() {
+        let start = Vector::new(1.0, 0.0, -1e-17);
+        let planes = [half_space([0.0, 0.0, 1.0], 0.0), half_space([0.01, 0.0, -1.0], 0.0)];
+        let end = end_within(&start, Vector::new(-5.0, 0.0, 0.0), &planes);
+        assert!(end.z > -1e-12, "{end}");
+        assert!(planes[1].normal.dot(&end) >= -1e-12, "{end}");
     }
 }

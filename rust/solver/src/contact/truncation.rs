@@ -16,6 +16,9 @@ use super::cut::{Cut, LEAST, MOST, cut, half_spaces};
 use super::half_space::{HalfSpace, end_within};
 use crate::state::Coordinates;
 
+/// Rounds of cutting: only what colliders push together takes as many.
+const ROUNDS: usize = 500;
+
 /// Rounds after which what is not safe no longer moves.
 const SLIDING_ROUNDS: usize = 12;
 
@@ -47,8 +50,7 @@ impl Contacts {
         };
         if cutting.is_changed.contains(&true) {
             self.stay_before_planes(&mut cutting);
-            // Each round after the first few stops a point more at the least.
-            for round in 0.. {
+            for round in 0..ROUNDS {
                 let cuts = self.cuts(&cutting.is_changed);
                 self.take_up(&cuts, round < SLIDING_ROUNDS, &mut cutting);
                 if !cutting.is_changed.contains(&true) {
@@ -110,7 +112,7 @@ impl Contacts {
     /// Takes cuts up: with their planes, if points may still slide along them. What that does not move, stops.
     fn take_up(&mut self, cuts: &[Cut], may_slide: bool, cutting: &mut Cutting) {
         cutting.is_changed.fill(false);
-        for cut in cuts.iter().filter(|_| may_slide) {
+        for cut in cuts.iter().filter(|cut| may_slide || cut.is_before_collider()) {
             half_spaces(cut, &self.paths, |half_space| cutting.half_spaces.push(half_space));
         }
         self.shorten(cutting);
@@ -127,18 +129,20 @@ impl Contacts {
     fn shorten(&mut self, cutting: &mut Cutting) {
         let Cutting { half_spaces, wanted, is_stopped, is_changed } = cutting;
         half_spaces.sort_by_key(|half_space| half_space.point);
-        let held = half_spaces.chunk_by(|one, other| one.point == other.point);
-        for own in held.filter(|own| !is_stopped[own[0].point as usize]) {
-            let point = own[0].point as usize;
+        let mut own = &half_spaces[..];
+        for (point, is_stopped) in is_stopped.iter().enumerate() {
+            let count = own.partition_point(|half_space| half_space.point as usize == point);
+            let (held_by, others) = own.split_at(count);
+            own = others;
+            if count == 0 && !is_stopped {
+                continue;
+            }
+            // What stops is still pushed by colliders.
+            let wanted = if *is_stopped { Vector::zeros() } else { wanted[point] };
             let start = self.paths.start[point];
-            let step = end_within(&start, start + wanted[point], own) - start;
+            let step = end_within(&start, start + wanted, held_by) - start;
             is_changed[point] = is_changed[point] || step != self.paths.step[point];
             self.paths.step[point] = step;
-        }
-        let stopped = is_stopped.iter().enumerate().filter(|(_, is_stopped)| **is_stopped);
-        for (point, _) in stopped {
-            let step = std::mem::take(&mut self.paths.step[point]);
-            is_changed[point] = is_changed[point] || step != Vector::zeros();
         }
     }
 

@@ -72,8 +72,8 @@ const LEAST_IN_CONTACT: usize = 4;
 const MOST_IN_CONTACT: usize = 6;
 
 /// How often a step is taken up again where it was cut short, if more than one in so many particles were.
-const ROUNDS: usize = 3;
-const MANY: usize = 1000;
+const ROUNDS: usize = 2;
+const MANY: usize = 100;
 
 /// An implicit integrator and all that it keeps between steps.
 #[derive(Debug)]

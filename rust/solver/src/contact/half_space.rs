@@ -18,21 +18,21 @@ pub(super) struct HalfSpace {
 pub(crate) struct Walls {
     /// In the order of their points.
     half_spaces: Vec<HalfSpace>,
-    /// Of all particles, which have half-spaces and which stay where they are; empty without walls.
-    has_walls: Vec<bool>,
+    /// Which particles have half-spaces, and which stay where they are; empty without walls.
+    is_walled: Vec<bool>,
     is_stopped: Vec<bool>,
 }
 
 impl Walls {
     /// Adds half-spaces, and those of all particles that stay where they are.
     pub(super) fn add(&mut self, half_spaces: Vec<HalfSpace>, is_stopped: &[bool]) {
-        self.has_walls.resize(is_stopped.len(), false);
+        self.is_walled.resize(is_stopped.len(), false);
         self.is_stopped.resize(is_stopped.len(), false);
         for (kept, is_stopped) in self.is_stopped.iter_mut().zip(is_stopped) {
             *kept |= is_stopped;
         }
         for half_space in &half_spaces {
-            self.has_walls[half_space.point as usize] = true;
+            self.is_walled[half_space.point as usize] = true;
         }
         self.half_spaces.extend(half_spaces);
         self.half_spaces.sort_by_key(|half_space| half_space.point);
@@ -45,7 +45,7 @@ impl Walls {
 
     /// Puts a particle back into its half-spaces, one after the other.
     pub(crate) fn keep(&self, particle: usize, positions: &mut Coordinates) {
-        if self.has_walls.get(particle) != Some(&true) {
+        if self.is_walled.get(particle) != Some(&true) {
             return;
         }
         let first = self.half_spaces.partition_point(|each| (each.point as usize) < particle);

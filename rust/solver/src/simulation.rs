@@ -209,12 +209,14 @@ impl Simulation {
             substeps = more;
             outcome = self.run(substeps, false);
         }
-        if let Outcome::Lost(_) = outcome {
+        if let Outcome::Lost(last) = outcome {
             // Once more, looking after each step: what is lost spreads from step to step.
             self.fall_back();
-            let outcome = self.run(substeps, true);
+            let first = match self.run(substeps, true) {
+                Outcome::Lost(first) => first,
+                Outcome::Well | Outcome::TooLong => last,
+            };
             self.fall_back();
-            let Outcome::Lost(first) = outcome else { return Err(self.diverged(0)) };
             return Err(self.diverged(first));
         }
         self.frame += 1;

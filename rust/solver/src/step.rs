@@ -53,6 +53,7 @@ impl Step<'_> {
             let end = (done + self.stride).min(self.count);
             contacts.start_step([done, end], self.count, &state.position);
         }
+        let clipped_before = contacts.clipped();
         let meets = !contacts.is_empty() && (is_last || self.number.is_multiple_of(self.stride));
         method.step(self.system, state, contacts, self.h);
         if let (Method::Explicit(.., response), true) = (&mut *method, meets) {
@@ -68,12 +69,13 @@ impl Step<'_> {
         }
         contacts.forget_walls();
         let mut clipped = contacts.truncate(&mut state.position);
-        let is_short = contacts.clipped_in_step() as usize * MANY <= self.system.particle_count();
+        let clipped_in_step = contacts.clipped() - clipped_before;
+        let is_short = clipped_in_step as usize * MANY <= self.system.particle_count();
         for _ in 0..if is_last { TURNS } else { 0 } {
             if clipped == 0 && is_held {
                 break;
             }
-            is_held = self.hold(state, limits, SWEEPS_AFTER_PULL, Some(contacts.walls()));
+            is_held = self.hold_again(state, limits, contacts.walls());
             clipped = contacts.truncate(&mut state.position);
         }
         is_short && (!is_last || is_held && clipped == 0)
@@ -94,7 +96,7 @@ impl Step<'_> {
                 }
                 true
             }
-            Method::Implicit(_) if !is_last => self.hold(state, limits, SWEEPS, None),
+            Method::Implicit(_) if !is_last => self.hold(state, limits, SWEEPS),
             Method::Implicit(implicit) => self.hold_at_end(state, implicit, limits),
         }
     }
@@ -106,30 +108,37 @@ impl Step<'_> {
         implicit: &mut Implicit,
         limits: &mut [Limit],
     ) -> bool {
-        let mut is_held = self.hold(state, limits, SWEEPS_AT_END, None);
+        let mut is_held = self.hold(state, limits, SWEEPS_AT_END);
         for _ in 0..PULLS {
             if is_held || !implicit.pull(self.system, state) {
                 break;
             }
-            is_held = self.hold(state, limits, SWEEPS_AFTER_PULL, Some(&Walls::default()));
+            is_held = self.hold_again(state, limits, &Walls::default());
         }
         is_held
     }
 
-    /// Applies the limiters; again only those that promise to hold their edges, within walls.
-    fn hold(
+    /// Applies the limiters, and says whether all edges are held.
+    fn hold(&self, state: &mut State, limits: &mut [Limit], most_sweeps: usize) -> bool {
+        self.hold_within(state, limits.iter_mut(), most_sweeps, &Walls::default())
+    }
+
+    /// The same again, within walls: of the limiters, those that promise to hold their edges.
+    fn hold_again(&self, state: &mut State, limits: &mut [Limit], walls: &Walls) -> bool {
+        let limits = limits.iter_mut().filter(|limit| limit.promises());
+        self.hold_within(state, limits, SWEEPS_AFTER_PULL, walls)
+    }
+
+    fn hold_within<'b>(
         &self,
         state: &mut State,
-        limits: &mut [Limit],
+        limits: impl Iterator<Item = &'b mut Limit>,
         most_sweeps: usize,
-        again_within: Option<&Walls>,
+        walls: &Walls,
     ) -> bool {
         let inverse_masses = &self.system.inverse_masses;
-        let limits = limits.iter_mut().filter(|limit| again_within.is_none() || limit.promises());
-        let nowhere = Walls::default();
-        let walls = again_within.unwrap_or(&nowhere);
         let is_held =
-            |limit: &mut Limit| limit.hold(state, inverse_masses, self.h, most_sweeps, walls);
-        limits.map(is_held).fold(true, |all, held| all & held)
+            limits.map(|limit| limit.hold(state, inverse_masses, self.h, most_sweeps, walls));
+        is_held.fold(true, |all, held| all & held)
     }
 }

@@ -12,6 +12,7 @@ use boucle_geometry::{Mesh, Vector};
 use super::Contacts;
 use super::contact::Contact;
 use super::recovery::Crossing;
+use crate::grouped::Grouped;
 
 /// Unit vectors agree if their mean is at least so long.
 const AGREEING: f64 = 0.7;
@@ -94,17 +95,17 @@ impl Contacts {
     }
 
     /// The vertices that edges of cloths join to each.
-    fn neighbors(&self) -> Vec<Vec<u32>> {
-        let mut neighbors = vec![Vec::new(); self.bodies.particle_count];
-        for edge in &self.bodies.cloths.edges {
-            let [a, b] = edge.points;
-            neighbors[a as usize].push(b);
-            neighbors[b as usize].push(a);
-        }
-        neighbors
+    fn neighbors(&self) -> Grouped<u32> {
+        let edges = self.bodies.cloths.edges.iter().map(|edge| edge.points);
+        Grouped::new(self.bodies.particle_count, edges.flat_map(|[a, b]| [(a, b), (b, a)]))
     }
 
-    fn regions_in(&self, body: u32, crossings: &[Crossing], neighbors: &[Vec<u32>]) -> Vec<Region> {
+    fn regions_in(
+        &self,
+        body: u32,
+        crossings: &[Crossing],
+        neighbors: &Grouped<u32>,
+    ) -> Vec<Region> {
         let meets = |crossing: &&Crossing| {
             self.bodies.is_particle(crossing.edge.points[0])
                 && self.bodies.body_of[crossing.triangle.points[0] as usize] == body
@@ -204,7 +205,7 @@ impl Contacts {
 fn flood(
     seed: u32,
     sides: &Sides,
-    neighbors: &[Vec<u32>],
+    neighbors: &Grouped<u32>,
     is_taken: &mut [bool],
 ) -> Option<Vec<u32>> {
     let (mut found, mut done, mut is_sound) = (vec![seed], 0, true);
@@ -212,7 +213,7 @@ fn flood(
     while done < found.len() {
         let vertex = found[done];
         done += 1;
-        for &next in &neighbors[vertex as usize] {
+        for &next in neighbors.of(vertex as usize) {
             let edge = [vertex.min(next), vertex.max(next)];
             if is_taken[next as usize] || sides.crossed.binary_search(&edge).is_ok() {
                 continue;

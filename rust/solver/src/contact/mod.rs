@@ -79,9 +79,8 @@ pub(crate) struct Contacts {
     pub(crate) matrix: ContactMatrix,
     /// What each contact does at the present guess.
     pressures: Vec<Pressure>,
-    /// Vertices that were cut short since they were last counted, and those of them before the present step.
+    /// Vertices that were cut short since they were last counted.
     clipped: u32,
-    clipped_before: u32,
 }
 
 impl Contacts {
@@ -104,7 +103,6 @@ impl Contacts {
             matrix: ContactMatrix::default(),
             pressures: Vec::new(),
             clipped: 0,
-            clipped_before: 0,
             bodies,
         }
     }
@@ -129,6 +127,11 @@ impl Contacts {
         std::mem::take(&mut self.clipped)
     }
 
+    /// The same, without forgetting them.
+    pub(crate) fn clipped(&self) -> u32 {
+        self.clipped
+    }
+
     /// What ways have been cut short by since it was forgotten.
     pub(crate) fn walls(&self) -> &Walls {
         &self.walls
@@ -136,11 +139,6 @@ impl Contacts {
 
     pub(crate) fn forget_walls(&mut self) {
         self.walls = Walls::default();
-    }
-
-    /// Vertices whose way was cut short in the present step so far, once for each cut.
-    pub(crate) fn clipped_in_step(&self) -> u32 {
-        self.clipped - self.clipped_before
     }
 
     /// The force (N) that each contact presses each of its particles with.
@@ -217,7 +215,6 @@ impl Contacts {
             *step = at(part[1], from, to) - start;
         }
         self.origins.copy_from_slice(&self.paths.start);
-        self.clipped_before = self.clipped;
     }
 
     /// Starts the rest of a step from where its first part has ended (m): the colliders have already gone their way.

@@ -19,6 +19,7 @@ use boucle_geometry::Way;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::candidate::{Candidate, Kind};
+use crate::kernel::lane_operators;
 
 /// Pairs that are looked at together: whole vectors of every instruction set.
 const COUNT: usize = 32;
@@ -241,20 +242,7 @@ impl<S: Simd> Three<S> {
     }
 }
 
-macro_rules! operators {
-    ($($operator:ident: $name:ident, $of_lanes:ident;)*) => {$(
-        impl<S: Simd> $operator for Lanes<S> {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $name(self, other: Self) -> Self {
-                Self { values: self.simd.$of_lanes(self.values, other.values), ..self }
-            }
-        }
-    )*};
-}
-
-operators! {
+lane_operators! {
     Add: add, add_f32s;
     Sub: sub, sub_f32s;
     Mul: mul, mul_f32s;

@@ -119,10 +119,15 @@ impl Contacts {
         let Cutting { is_stopped, is_changed, .. } = cutting;
         let is_moved = |point: &u32| is_changed.get(*point as usize) == Some(&true);
         let idle = cuts.iter().map(Cut::candidate).filter(|cut| !cut.points.iter().any(is_moved));
-        for &point in idle.flat_map(|cut| &cut.points).filter(|&&point| self.paths.is_free(point)) {
+        let points = idle.flat_map(|cut| &cut.points).filter(|&&point| self.paths.is_free(point));
+        let mut stops = false;
+        for &point in points {
             is_stopped[point as usize] = true;
+            stops = true;
         }
-        self.shorten(cutting);
+        if stops {
+            self.shorten(cutting);
+        }
     }
 
     /// Ends points where their half-spaces let them, and marks those that end elsewhere now.

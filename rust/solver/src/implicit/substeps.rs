@@ -8,9 +8,9 @@
 //! ```
 //!
 //! with the cloths' size (m). Few numbers are used, and fewer steps only if they are clearly enough, because each change
-//! of the step factors the matrix anew. A frame whose contacts cut too many ways short is done once more with twice the
-//! steps. A pin that is to change its velocity has an error before the frame begins. A frame
-//! in which cloth snaps taut shows it only at its end: if it should have had twice as many steps, it is done once more.
+//! of the step factors the matrix anew. A pin that is to change its velocity has an error before the frame begins. A frame
+//! in which cloth snaps taut shows it only at its end: if it should have had twice as many steps, it is done once more. So
+//! is, with twice the steps, a frame whose contacts cut too many ways short.
 
 use crate::contact::LONGEST_WAY;
 

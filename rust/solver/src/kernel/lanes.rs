@@ -25,7 +25,8 @@ impl<S: Simd> Lanes<S> {
     }
 }
 
-macro_rules! operators {
+/// Arithmetic of a type `Lanes<S>` with `simd` and `values`, by functions of the instruction set.
+macro_rules! lane_operators {
     ($($operator:ident: $name:ident, $of_lanes:ident;)*) => {$(
         impl<S: Simd> $operator for Lanes<S> {
             type Output = Self;
@@ -37,8 +38,9 @@ macro_rules! operators {
         }
     )*};
 }
+pub(crate) use lane_operators;
 
-operators! {
+lane_operators! {
     Add: add, add_f64s;
     Sub: sub, sub_f64s;
     Mul: mul, mul_f64s;

@@ -17,6 +17,7 @@ mod sums;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use lanes::lane_operators;
 pub(crate) use layout::{Diagonal, GATHERED, GatherSlot, Layout, Place};
 pub(crate) use sums::Sums;
 

@@ -56,11 +56,13 @@ impl Contacts {
             }
         });
         let search = start.elapsed().saturating_sub(fit);
+        self.remembered.renew(&self.near, &self.pressures);
         self.take(&found);
         self.near.par_iter_mut().for_each(|contact| contact.stiffen(inverse_masses, h));
         self.matrix.join(&self.near, inverse_masses);
-        self.pressures.clear();
-        self.pressures.resize(self.near.len(), Pressure::default());
+        let Self { near, pressures, remembered, .. } = self;
+        pressures.clear();
+        pressures.extend(near.iter().map(|contact| Pressure::expected(remembered.of(contact))));
         Detection {
             contacts: self.near.len(),
             watched: self.watched.len(),

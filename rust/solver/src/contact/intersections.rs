@@ -65,10 +65,10 @@ impl Contacts {
         }
     }
 
-    /// The points of each pair of features that are nearer to each other than the radius of one.
+    /// The points of each pair of a cloth's feature and a collider's that are nearer to each other than its radius.
     fn too_near(&self) -> Vec<[u32; 4]> {
         let Self { bodies, paths, .. } = self;
-        let found = self.search(None, |candidate, found: &mut Vec<[u32; 4]>| {
+        let found = self.search_colliders(|candidate, found: &mut Vec<[u32; 4]>| {
             let radius =
                 bodies.body(candidate.points[0]).radius + bodies.body(candidate.points[3]).radius;
             if radius > 0.0 {

@@ -46,7 +46,7 @@ use features::Trees;
 pub(crate) use half_space::Walls;
 pub(crate) use matrix::ContactMatrix;
 use paths::Paths;
-use pressing::Pressure;
+use pressing::{Pressure, Remembered};
 use recovery::Tangle;
 pub(crate) use response::Response;
 
@@ -79,6 +79,7 @@ pub(crate) struct Contacts {
     pub(crate) matrix: ContactMatrix,
     /// What each contact does at the present guess.
     pressures: Vec<Pressure>,
+    remembered: Remembered,
     /// Vertices that were cut short since they were last counted.
     clipped: u32,
 }
@@ -102,6 +103,7 @@ impl Contacts {
             walls: Walls::default(),
             matrix: ContactMatrix::default(),
             pressures: Vec::new(),
+            remembered: Remembered::default(),
             clipped: 0,
             bodies,
         }
@@ -215,6 +217,11 @@ impl Contacts {
             *step = at(part[1], from, to) - start;
         }
         self.origins.copy_from_slice(&self.paths.start);
+        if part[0] == 0 {
+            // A frame depends on nothing but the state at its start.
+            self.near.clear();
+            self.pressures.clear();
+        }
     }
 
     /// Starts the rest of a step from where its first part has ended (m): the colliders have already gone their way.

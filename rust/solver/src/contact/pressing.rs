@@ -8,7 +8,8 @@
 //! a = m/h'²        free depth p + f/a        slip with friction |u| - mu f/a, after an iteration without
 //! ```
 //!
-//! Later iterations take friction at the slip that they find. Where all have met, the tangent is that of the law.
+//! The first takes friction by what the same contact pressed with in the last step of the frame; later ones take it at the
+//! slip that they find. Where all have met, the tangent is that of the law.
 
 use boucle_geometry::Vector;
 use rayon::prelude::*;
@@ -27,6 +28,31 @@ pub(super) struct Pressure {
     slope: f64,
     /// N/m, across its normal.
     resistance: f64,
+    /// N, what friction goes by before a solution has found a force.
+    expected: f64,
+}
+
+/// What contacts pressed with in the step before.
+#[derive(Debug, Default)]
+pub(super) struct Remembered {
+    /// Points of contacts, sorted, and forces (N).
+    forces: Vec<([u32; 4], f64)>,
+}
+
+impl Remembered {
+    /// Remembers these contacts alone.
+    pub(super) fn renew(&mut self, contacts: &[Contact], pressures: &[Pressure]) {
+        self.forces.clear();
+        let pressing = contacts.iter().zip(pressures).filter(|(_, pressure)| pressure.force > 0.0);
+        self.forces.extend(pressing.map(|(contact, pressure)| (contact.points, pressure.force)));
+        self.forces.sort_unstable_by_key(|(points, _)| *points);
+    }
+
+    /// The force (N) of a contact; 0 if it did not press.
+    pub(super) fn of(&self, contact: &Contact) -> f64 {
+        let place = self.forces.binary_search_by_key(&contact.points, |(points, _)| *points);
+        place.map_or(0.0, |place| self.forces[place].1)
+    }
 }
 
 /// How a contact has moved.
@@ -86,9 +112,14 @@ impl Contacts {
 }
 
 impl Pressure {
+    /// Before the first guess, with a force (N) that is expected.
+    pub(super) fn expected(force: f64) -> Self {
+        Self { expected: force, ..Self::default() }
+    }
+
     /// The same at a new guess.
     fn renewed(&self, contact: &Contact, way: &Way, h: f64) -> Self {
-        let strength = contact.friction * self.force;
+        let strength = contact.friction * (self.force + self.expected);
         let slip = way.slip.norm();
         let slipping = if self.resistance == 0.0 {
             (slip - strength / contact.inertia).max(0.0)
@@ -98,6 +129,6 @@ impl Pressure {
         let most = friction::FIRMEST * contact.inertia;
         let resistance = friction::resistance(strength, slipping, h).min(most);
         let [force, slope] = contact.tangent(way.gap, self.force);
-        Self { force, slope, resistance }
+        Self { force, slope, resistance, expected: 0.0 }
     }
 }

@@ -33,19 +33,33 @@ impl Contacts {
         is_changed: Option<&[bool]>,
         visit: impl Fn(Candidate, &mut T) + Sync,
     ) -> Vec<T> {
+        let search = self.searching(is_changed, visit);
+        let mut found = search.points_and_triangles_of_cloths();
+        found.extend(search.edges_of_cloths());
+        found.extend(search.cloths_and_colliders());
+        found
+    }
+
+    /// The same for candidates of a cloth and a collider.
+    pub(super) fn search_colliders<T: Default + Send>(
+        &self,
+        visit: impl Fn(Candidate, &mut T) + Sync,
+    ) -> Vec<T> {
+        self.searching(None, visit).cloths_and_colliders()
+    }
+
+    fn searching<'a, T>(
+        &'a self,
+        is_changed: Option<&'a [bool]>,
+        visit: impl Fn(Candidate, &mut T) + Sync,
+    ) -> Search<'a, impl Fn(Candidate, &mut T) + Sync> {
         let Self { bodies, cloths, colliders, ways, tangle, .. } = self;
-        let visit = |candidate: Candidate, found: &mut T| {
+        let visit = move |candidate: Candidate, found: &mut T| {
             if bodies.candidate_may_touch(&candidate) && !tangle.lets_go(&candidate) {
                 visit(candidate, found);
             }
         };
-        let search = Search { bodies, cloths, colliders, ways, is_changed, visit };
-        let mut found = search.points_and_triangles_of_cloths();
-        found.extend(search.edges_of_cloths());
-        found.extend(search.points_of_cloths_and_triangles_of_colliders());
-        found.extend(search.triangles_of_cloths_and_points_of_colliders());
-        found.extend(search.edges_of_cloths_and_colliders());
-        found
+        Search { bodies, cloths, colliders, ways, is_changed, visit }
     }
 }
 
@@ -149,6 +163,16 @@ impl<V> Search<'_, V> {
                 .edges
                 .pairs_of_marked(|item| is_marked(&edges[item as usize].points, is_changed), visit),
         }
+    }
+
+    fn cloths_and_colliders<T: Default + Send>(&self) -> Vec<T>
+    where
+        V: Fn(Candidate, &mut T) + Sync,
+    {
+        let mut found = self.points_of_cloths_and_triangles_of_colliders();
+        found.extend(self.triangles_of_cloths_and_points_of_colliders());
+        found.extend(self.edges_of_cloths_and_colliders());
+        found
     }
 
     fn points_of_cloths_and_triangles_of_colliders<T: Default + Send>(&self) -> Vec<T>

@@ -4,14 +4,17 @@
 //!
 //! ```text
 //! gap(x) = d + n·sum_i w_i (x_i - start_i)                                (m)
-//! f      = k p²/(2 s) for p < s,  k (p - s/2) beyond      p = reach - gap, s = reach/4   (N)
-//! k      = 20 m/h² min(100, max(1, (reach/2d)²))                          (N/m)
+//! F(p)   = k p²/(2 s) for p < s,  k (p - s/2) beyond      p = reach - gap, s = reach/4   (N)
+//! k      = 10 m/h² min(100, max(1, (reach/2d)²))                          (N/m)
+//! f      = max(0, F(p) + c (F(p) - F(p0)))                                (N)
 //! ```
 //!
-//! with the mass m that the contact feels. Without the ramp over s a resting sheet trembles. The potential of f is convex,
-//! and so is the step.
+//! with the mass m that the contact feels. Without the ramp over s a resting sheet trembles. The second part of f is a
+//! dashpot beside the spring, from the depth p0 at the step's start: without it the lower contacts of a stack, which stop
+//! what falls on them, throw it up again. It never pulls. The potential of f is convex, and so is the step.
 //!
-//! Source: Li et al. 2020 for smooth contact in an implicit step; the law is our own.
+//! Source: Li et al. 2020 for smooth contact in an implicit step; Hunt & Crossley 1975 for a dashpot that is as stiff as
+//! its spring; the law is our own.
 
 use boucle_geometry::Vector;
 use boucle_geometry::distance::Closest;
@@ -21,7 +24,10 @@ use super::candidate::Candidate;
 use super::paths::Paths;
 
 /// Stiffness of a contact, in units of m/h².
-const STIFFNESS: f64 = 20.0;
+const STIFFNESS: f64 = 10.0;
+
+/// How many times stiffer its dashpot makes it for a step: 50 layers that fall come to rest; with less, they bounce.
+const DAMPING: f64 = 9.0;
 
 /// The most by which closeness makes it stiffer.
 const STIFFEST: f64 = 100.0;
@@ -53,8 +59,10 @@ pub(super) struct Contact {
     distance: f64,
     /// Gap (m) below which the force sets in.
     reach: f64,
-    /// N/m
+    /// Of spring and dashpot (N/m).
     stiffness: f64,
+    /// What the dashpot takes from the force (N), for the depth at the start.
+    relief: f64,
     /// Mass that it feels over h'² (N/m).
     pub(super) inertia: f64,
     pub(super) friction: f64,
@@ -129,6 +137,7 @@ impl Near {
             distance,
             reach,
             stiffness: 0.0,
+            relief: 0.0,
             inertia: 1.0,
             friction: (one * other).sqrt(),
         })
@@ -150,6 +159,7 @@ impl Contact {
             distance: 0.0,
             reach: way,
             stiffness: 0.0,
+            relief: 0.0,
             inertia: 1.0,
             friction: 0.0,
         }
@@ -175,6 +185,7 @@ impl Contact {
             distance: start,
             reach,
             stiffness: 0.0,
+            relief: 0.0,
             inertia: 1.0,
             friction,
         })
@@ -197,7 +208,11 @@ impl Contact {
         let near = if self.distance > 0.0 { 0.5 * self.reach / self.distance } else { 1.0 };
         let closeness = (near * near).clamp(1.0, STIFFEST);
         self.inertia = 1.0 / softness;
-        self.stiffness = STIFFNESS * closeness * self.inertia;
+        self.stiffness = (1.0 + DAMPING) * STIFFNESS * closeness * self.inertia;
+        if self.distance > 0.0 {
+            let [force, _] = self.force(self.distance);
+            self.relief = DAMPING / (1.0 + DAMPING) * force;
+        }
     }
 
     /// Gap (m) where the points are `moved` (m) from their starts, summed by weights.
@@ -211,18 +226,14 @@ impl Contact {
     pub(super) fn force(&self, gap: f64) -> [f64; 2] {
         let depth = self.reach - gap;
         let ramp = RAMP * self.reach.abs();
-        if depth <= 0.0 {
-            [0.0, 0.0]
-        } else if depth < ramp {
-            let slope = self.stiffness * depth / ramp;
-            [0.5 * slope * depth, slope]
-        } else {
-            [self.stiffness * (depth - 0.5 * ramp), self.stiffness]
-        }
+        let slope = self.stiffness * (depth / ramp).min(1.0);
+        let force =
+            if depth < ramp { 0.5 * slope * depth } else { self.stiffness * (depth - 0.5 * ramp) };
+        if depth > 0.0 && force > self.relief { [force - self.relief, slope] } else { [0.0, 0.0] }
     }
 
     /// The depth (m) at which the contact would rest by itself, with the mass that it feels, if that went to a depth (m)
-    /// without it: of `a (free - p) = f(p)`.
+    /// without it, and without relief: of `a (free - p) = f(p)`.
     #[inline]
     fn rest(&self, free: f64) -> f64 {
         let Self { inertia, stiffness, reach, .. } = *self;
@@ -242,7 +253,7 @@ impl Contact {
     #[inline]
     pub(super) fn tangent(&self, gap: f64, last: f64) -> [f64; 2] {
         let depth = self.reach - gap;
-        let free = depth + last / self.inertia;
+        let free = depth + (last + self.relief) / self.inertia;
         if free <= 0.0 || self.stiffness == 0.0 {
             return [0.0, 0.0];
         }
@@ -254,13 +265,20 @@ impl Contact {
     /// Energy (J) at a gap (m).
     #[cfg(test)]
     pub(super) fn energy(&self, gap: f64) -> f64 {
-        let depth = (self.reach - gap).max(0.0);
         let ramp = RAMP * self.reach.abs();
-        if depth < ramp {
-            self.stiffness * depth.powi(3) / (6.0 * ramp)
-        } else {
-            let beyond = depth - ramp;
-            self.stiffness * (ramp * ramp / 6.0 + 0.5 * ramp * beyond + 0.5 * beyond * beyond)
-        }
+        let relieved = |depth: f64| {
+            let spring = if depth < ramp {
+                self.stiffness * depth.powi(3) / (6.0 * ramp)
+            } else {
+                let beyond = depth - ramp;
+                self.stiffness * (ramp * ramp / 6.0 + 0.5 * ramp * beyond + 0.5 * beyond * beyond)
+            };
+            spring - self.relief * depth
+        };
+        // Where the spring bears the relief.
+        let by_ramp = (2.0 * self.relief * ramp / self.stiffness).sqrt();
+        let least =
+            if by_ramp < ramp { by_ramp } else { self.relief / self.stiffness + 0.5 * ramp };
+        relieved((self.reach - gap).max(least)) - relieved(least)
     }
 }

@@ -68,7 +68,7 @@ const STOP: Stop = Stop { tolerance: 0.06, least_iterations: 1, most_iterations:
 const LEFT: f64 = 0.2;
 
 /// Iterations of Newton in contact: friction needs the pressure of one before it.
-const LEAST_IN_CONTACT: usize = 4;
+const LEAST_IN_CONTACT: usize = 3;
 const MOST_IN_CONTACT: usize = 6;
 
 /// How often a step is taken up again where it was cut short, if more than one in so many particles were.

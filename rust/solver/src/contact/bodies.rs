@@ -8,11 +8,20 @@ use boucle_geometry::Vector;
 use crate::cloth::{Cloth, placed};
 use crate::collider::{Collider, Shape};
 use crate::collision::Collision;
+use crate::material::SpringKind;
 
 use super::candidate::{Candidate, Kind};
+use super::cut::MOST;
+use super::easing::Easing;
 use super::enclosure;
 use super::exclusion::Exclusion;
 use super::features::Features;
+
+/// How far points may stray, as a part of the mean edge: with more, all that lies near each other at rest is watched.
+const SLACK: f64 = 0.25;
+
+/// The same (m) at the least: some times the gap that must be left.
+const LEAST_SLACK: f64 = 4.0 * MOST;
 
 /// What a cloth or a collider is made of.
 #[derive(Clone, Copy, Debug)]
@@ -21,6 +30,8 @@ pub(super) struct Body {
     pub(super) radius: f64,
     /// What is kept free (m) around that.
     pub(super) thickness: f64,
+    /// How far (m) its points may stray from where they are expected before they are looked at again.
+    pub(super) slack: f64,
     pub(super) friction: f64,
     /// 1 if it is a closed mesh whose faces are seen from outside, -1 if from inside, 0 if it is none.
     pub(super) facing: f64,
@@ -48,6 +59,8 @@ pub(super) struct Bodies {
     pub(super) planes: Vec<Plane>,
     /// Particles at rest (m), and colliders' points at the first frame.
     pub(super) rest: Vec<Vector>,
+    /// For pairs of a cloth that is thick for its edges.
+    pub(super) easing: Option<Easing>,
     /// What does not collide with its own cloth, and with colliders.
     excluded: [Exclusion; 2],
     /// For each cloth, which colliders it meets.
@@ -67,6 +80,7 @@ impl Bodies {
             colliders: Features::default(),
             planes: Vec::new(),
             rest: Vec::new(),
+            easing: None,
             excluded: [(); 2].map(|()| Exclusion::new(particle_count)),
             meets: Vec::new(),
             all_touch: true,
@@ -77,6 +91,7 @@ impl Bodies {
         for collider in colliders {
             bodies.add_collider(collider);
         }
+        bodies.easing = Easing::of(&bodies);
         bodies
     }
 
@@ -90,6 +105,7 @@ impl Bodies {
         self.each.push(Body {
             radius: 0.0,
             thickness: collision.thickness,
+            slack: collision.thickness.min(SLACK * mean_edge_length(cloth)).max(LEAST_SLACK),
             friction: collision.friction,
             facing: 0.0,
             with_self: collision.with_self,
@@ -126,6 +142,7 @@ impl Bodies {
             facing,
             radius: collider.shape.radius(),
             thickness: collider.thickness,
+            slack: 0.0,
             friction: collider.friction,
             with_self: false,
         });
@@ -135,6 +152,10 @@ impl Bodies {
             Shape::Capsule { .. } => self.colliders.add_edge([base, base + 1]),
             Shape::Mesh(mesh) => self.colliders.add_mesh(mesh, base),
         }
+    }
+
+    pub(super) fn cloth_count(&self) -> usize {
+        self.meets.len()
     }
 
     /// Whether anything can touch at all.
@@ -199,4 +220,12 @@ impl Bodies {
             None => candidate.speaks_for(feature),
         }
     }
+}
+
+/// Of the springs along edges (m); without any, infinite.
+fn mean_edge_length(cloth: &Cloth) -> f64 {
+    let edges = cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Stretch);
+    let [count, sum] =
+        edges.fold([0.0, 0.0], |[count, sum], spring| [count + 1.0, sum + spring.rest_length]);
+    if count > 0.0 { sum / count } else { f64::INFINITY }
 }

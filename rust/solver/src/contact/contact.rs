@@ -36,7 +36,7 @@ const STIFFEST: f64 = 100.0;
 const RAMP: f64 = 0.25;
 
 /// A pair keeps no more between it than this part of its distance at rest.
-const OF_REST: f64 = 0.9;
+pub(super) const OF_REST: f64 = 0.9;
 
 /// What is inside a body comes out by this part of its depth a step, and by half a thickness at the least.
 const OUT: f64 = 0.05;
@@ -81,6 +81,8 @@ pub(super) struct Near {
     end: f64,
     /// What is kept free (m) around both.
     thickness: f64,
+    /// How far (m) both may stray.
+    slack: f64,
 }
 
 impl Near {
@@ -104,12 +106,13 @@ impl Near {
             nearest: distance.min(distance + nearing),
             end: distance + least - most,
             thickness: sides[0].thickness + sides[1].thickness,
+            slack: sides[0].slack + sides[1].slack,
         }
     }
 
     /// Whether ways that differ a little from these may lead through each other.
     pub(super) fn is_to_be_watched(&self) -> bool {
-        !(self.end >= self.thickness)
+        !(self.end >= self.slack)
     }
 
     /// The contact of the features, if they come near enough.

@@ -44,10 +44,10 @@ impl Contacts {
         self.paths.set_ends(ends);
         self.expected.copy_from_slice(&self.paths.step);
         self.is_safe = false;
-        self.fit(|body| body.radius + body.thickness);
+        self.fit(|body| body.radius + body.thickness.max(body.slack));
         let fit = start.elapsed();
         let Self { bodies, paths, .. } = &*self;
-        let found = self.search(None, |candidate, found: &mut Found| {
+        let found = self.search_contacts(|candidate, found: &mut Found| {
             let near = Near::new(&candidate, bodies, paths);
             let contact = near.contact(&candidate, bodies);
             if contact.is_some() || near.is_to_be_watched() {

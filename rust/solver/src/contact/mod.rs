@@ -15,6 +15,7 @@ mod candidate;
 mod contact;
 mod cut;
 mod detection;
+mod easing;
 mod enclosure;
 mod exclusion;
 mod features;

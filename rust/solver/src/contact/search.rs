@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::bodies::{Bodies, Body};
 use super::candidate::Candidate;
+use super::easing::Easing;
 use super::features::{Edge, Features, Triangle};
 use super::sieve::Sieve;
 use super::{Contacts, Trees};
@@ -33,11 +34,15 @@ impl Contacts {
         is_changed: Option<&[bool]>,
         visit: impl Fn(Candidate, &mut T) + Sync,
     ) -> Vec<T> {
-        let search = self.searching(is_changed, visit);
-        let mut found = search.points_and_triangles_of_cloths();
-        found.extend(search.edges_of_cloths());
-        found.extend(search.cloths_and_colliders());
-        found
+        self.searching(is_changed, None, visit).everything()
+    }
+
+    /// The same, but for pairs of a cloth that lay nearer to each other at rest than they are to be.
+    pub(super) fn search_contacts<T: Default + Send>(
+        &self,
+        visit: impl Fn(Candidate, &mut T) + Sync,
+    ) -> Vec<T> {
+        self.searching(None, self.bodies.easing.as_ref(), visit).everything()
     }
 
     /// The same for candidates of a cloth and a collider.
@@ -45,12 +50,13 @@ impl Contacts {
         &self,
         visit: impl Fn(Candidate, &mut T) + Sync,
     ) -> Vec<T> {
-        self.searching(None, visit).cloths_and_colliders()
+        self.searching(None, None, visit).cloths_and_colliders()
     }
 
     fn searching<'a, T>(
         &'a self,
         is_changed: Option<&'a [bool]>,
+        easing: Option<&'a Easing>,
         visit: impl Fn(Candidate, &mut T) + Sync,
     ) -> Search<'a, impl Fn(Candidate, &mut T) + Sync> {
         let Self { bodies, cloths, colliders, ways, tangle, .. } = self;
@@ -59,7 +65,7 @@ impl Contacts {
                 visit(candidate, found);
             }
         };
-        Search { bodies, cloths, colliders, ways, is_changed, visit }
+        Search { bodies, cloths, colliders, ways, is_changed, easing, visit }
     }
 }
 
@@ -69,10 +75,29 @@ struct Search<'a, V> {
     colliders: &'a Trees,
     ways: &'a [Way],
     is_changed: Option<&'a [bool]>,
+    easing: Option<&'a Easing>,
     visit: V,
 }
 
 impl<V> Search<'_, V> {
+    fn everything<T: Default + Send>(&self) -> Vec<T>
+    where
+        V: Fn(Candidate, &mut T) + Sync,
+    {
+        let mut found = self.points_and_triangles_of_cloths();
+        found.extend(self.edges_of_cloths());
+        found.extend(self.cloths_and_colliders());
+        found
+    }
+
+    fn sift<T>(&self, candidates: impl Iterator<Item = Candidate>, found: &mut T)
+    where
+        V: Fn(Candidate, &mut T),
+    {
+        let Self { bodies, ways, easing, .. } = *self;
+        Sieve { bodies, ways, easing }.sift(candidates, |each| (self.visit)(each, found));
+    }
+
     /// Shows what the sieve leaves of pairs of a point and a triangle.
     fn points_and_triangles<'b, T>(
         &self,
@@ -85,7 +110,7 @@ impl<V> Search<'_, V> {
             let is_lone = !self.bodies.is_particle(point) && self.bodies.body(point).radius > 0.0;
             Candidate::point_triangle(point, triangle, is_lone)
         });
-        Sieve::sift(self.ways, candidates, |each| (self.visit)(each, found));
+        self.sift(candidates, found);
     }
 
     /// Shows what the sieve leaves of pairs of edges.
@@ -97,7 +122,7 @@ impl<V> Search<'_, V> {
             let is_lone = self.bodies.body(second.points[0]).radius > 0.0;
             Candidate::edge_edge(first, second, is_lone)
         });
-        Sieve::sift(self.ways, candidates, |each| (self.visit)(each, found));
+        self.sift(candidates, found);
     }
 
     /// The pairs of items of two hierarchies; of those of which the first is marked by what has changed, if it is said.

@@ -18,7 +18,9 @@ use std::ops::{Add, Div, Mul, Sub};
 use boucle_geometry::Way;
 use pulp::{Arch, Simd, WithSimd};
 
+use super::bodies::Bodies;
 use super::candidate::{Candidate, Kind};
+use super::easing::{Easing, OF_REST_AT_MOST};
 use crate::kernel::lane_operators;
 
 /// Pairs that are looked at together: whole vectors of every instruction set.
@@ -32,6 +34,9 @@ struct Pairs {
     places: [[Row; 3]; 4],
     steps: [[Row; 3]; 4],
     around: Row,
+    /// Where they are at rest, and what is around them at the least, if they lay near each other there.
+    rests: [[Row; 3]; 4],
+    least: Row,
 }
 
 impl Pairs {
@@ -44,11 +49,41 @@ impl Pairs {
             }
         }
         self.around[lane] = ways[0].around + ways[3].around;
+        self.least[lane] = self.around[lane];
+    }
+
+    #[inline(always)]
+    fn ease(&mut self, lane: usize, (places, by): ([&[f32; 3]; 4], f32)) {
+        for (point, place) in places.into_iter().enumerate() {
+            for (rests, place) in self.rests[point].iter_mut().zip(place) {
+                rests[lane] = *place;
+            }
+        }
+        self.least[lane] -= by;
+    }
+
+    /// What is around both features of some of the pairs, or less if they lay near each other at rest.
+    #[inline(always)]
+    fn around<S: Simd>(&self, simd: S, kind: Kind, is_eased: bool, vector: usize) -> Lanes<S> {
+        let around = lanes(simd, &self.around, vector);
+        if !is_eased {
+            return around;
+        }
+        let [a, b, c, d] = rows(simd, &self.rests, vector);
+        let square = match kind {
+            Kind::PointTriangle => (a - b).square().min((a - c).square()).min((a - d).square()),
+            Kind::EdgeEdge => {
+                let of_a = (a - c).square().min((a - d).square());
+                of_a.min((b - c).square()).min((b - d).square())
+            }
+        };
+        let eased = square.sqrt() * Lanes::all(simd, OF_REST_AT_MOST);
+        around.min(eased).max(lanes(simd, &self.least, vector))
     }
 
     /// By how much (m) some of the pairs stay apart along their directions at the least, beyond what is around both.
     #[inline(always)]
-    fn slack<S: Simd>(&self, simd: S, kind: Kind, vector: usize) -> Lanes<S> {
+    fn slack<S: Simd>(&self, simd: S, kind: Kind, is_eased: bool, vector: usize) -> Lanes<S> {
         let x = rows(simd, &self.places, vector);
         let steps = rows(simd, &self.steps, vector);
         let direction = match kind {
@@ -68,7 +103,7 @@ impl Pairs {
                 (zero.min(b) - c.max(d), change.max(most_change(steps[1], [steps[2], steps[3]])))
             }
         };
-        let needed = lanes(simd, &self.around, vector) + change.sqrt();
+        let needed = self.around(simd, kind, is_eased, vector) + change.sqrt();
         gap - needed * direction.square().sqrt()
     }
 }
@@ -95,26 +130,40 @@ fn three<S: Simd>(simd: S, [x, y, z]: &[Row; 3], vector: usize) -> Three<S> {
 }
 
 /// What sifts.
-pub(super) struct Sieve<'a, C, V> {
-    ways: &'a [Way],
+#[derive(Clone, Copy)]
+pub(super) struct Sieve<'a> {
+    pub(super) bodies: &'a Bodies,
+    pub(super) ways: &'a [Way],
+    /// Whether, and how much, less is enough for pairs that lay near each other at rest.
+    pub(super) easing: Option<&'a Easing>,
+}
+
+impl Sieve<'_> {
+    /// Shows the candidates, of one kind, that may come as near on their ways as what is around both features.
+    pub(super) fn sift(
+        self,
+        candidates: impl Iterator<Item = Candidate>,
+        visit: impl FnMut(Candidate),
+    ) {
+        Arch::new().dispatch(Sifting { sieve: self, candidates, visit });
+    }
+}
+
+struct Sifting<'a, C, V> {
+    sieve: Sieve<'a>,
     candidates: C,
     visit: V,
 }
 
-impl<C: Iterator<Item = Candidate>, V: FnMut(Candidate)> Sieve<'_, C, V> {
-    /// Shows the candidates, of one kind, that may come as near on their ways as what is around both features.
-    pub(super) fn sift(ways: &[Way], candidates: C, visit: V) {
-        Arch::new().dispatch(Sieve { ways, candidates, visit });
-    }
-}
-
-impl<C: Iterator<Item = Candidate>, V: FnMut(Candidate)> WithSimd for Sieve<'_, C, V> {
+impl<C: Iterator<Item = Candidate>, V: FnMut(Candidate)> WithSimd for Sifting<'_, C, V> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) {
+        let Sieve { bodies, ways, easing } = self.sieve;
         let zero = [[[0.0; COUNT]; 3]; 4];
-        let mut pairs = Pairs { places: zero, steps: zero, around: [0.0; COUNT] };
+        let none = [0.0; COUNT];
+        let mut pairs = Pairs { places: zero, steps: zero, around: none, rests: zero, least: none };
         let mut shown = [Candidate::NONE; COUNT];
         let mut slack = [0.0; COUNT];
         loop {
@@ -123,15 +172,20 @@ impl<C: Iterator<Item = Candidate>, V: FnMut(Candidate)> WithSimd for Sieve<'_, 
                 && let Some(candidate) = self.candidates.next()
             {
                 let [a, b, c, d] = candidate.points;
-                let way = |point: u32| &self.ways[point as usize];
+                let way = |point: u32| &ways[point as usize];
                 pairs.set(count, [way(a), way(b), way(c), way(d)]);
+                if let Some(eased) =
+                    easing.and_then(|easing| easing.between(bodies, candidate.points))
+                {
+                    pairs.ease(count, eased);
+                }
                 shown[count] = candidate;
                 count += 1;
             }
             let kind = shown[0].kind;
             for vector in 0..count.div_ceil(S::F32_LANES) {
                 let slack = &mut S::as_mut_simd_f32s(&mut slack).0[vector];
-                *slack = pairs.slack(simd, kind, vector).values;
+                *slack = pairs.slack(simd, kind, easing.is_some(), vector).values;
             }
             for (candidate, slack) in shown[..count].iter().zip(slack) {
                 // What is no number does not prove anything.

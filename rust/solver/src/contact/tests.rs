@@ -72,6 +72,11 @@ fn folded(seed: usize) -> Cloth {
     cloth(positions, &faces, 0.004, 0.3)
 }
 
+/// The same, thicker than its edges are long.
+fn thick(cloth: Cloth) -> Cloth {
+    Cloth { collision: Some(Collision { thickness: 0.05, ..Collision::default() }), ..cloth }
+}
+
 /// The same, clear above what is folded.
 fn above(cloth: Cloth) -> Cloth {
     let positions = cloth.positions.iter().map(|x| x + 0.11 * Vector::z()).collect();
@@ -235,7 +240,8 @@ fn detection_finds_the_contacts_and_the_pairs_to_watch_that_all_pairs_have() {
         ],
     ];
     for (number, colliders) in all.iter().enumerate() {
-        for cloths in [vec![soup(4, 11)], vec![folded(5), above(soup(3, 99))]] {
+        let all = [vec![soup(4, 11)], vec![folded(5), above(soup(3, 99))], vec![thick(folded(6))]];
+        for cloths in all {
             for amplitude in [0.0, 0.01, 0.1] {
                 let (mut contacts, starts, inverse_masses) = contacts(&cloths, colliders);
                 contacts.start_step([0, 1], 1, &coordinates(&starts));

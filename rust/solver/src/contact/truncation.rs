@@ -5,7 +5,7 @@
 //! stays where it started, and what meets that, until all is safe.
 //!
 //! Where the step was expected to lead is known from detection, and with it all candidates that may meet on ways that differ
-//! from those by no more than the thickness of the cloth. Only what strays farther is looked for again.
+//! from those by no more than the slack of the cloth. Only what strays farther is looked for again.
 
 use boucle_geometry::Vector;
 use rayon::prelude::*;
@@ -91,7 +91,7 @@ impl Contacts {
         let mut cuts: Vec<Cut> =
             cuts.filter_map(|candidate| cut(candidate, bodies, paths)).collect();
         let is_astray = |point: usize| {
-            let slack = bodies.body(point as u32).thickness - MOST;
+            let slack = bodies.body(point as u32).slack - 2.0 * MOST;
             (paths.step[point] - expected[point]).norm_squared() > slack * slack
         };
         let is_astray: Vec<bool> = (0..is_changed.len()).map(is_astray).collect();

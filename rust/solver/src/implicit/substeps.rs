@@ -15,7 +15,7 @@
 use crate::contact::LONGEST_WAY;
 
 /// The numbers of steps that are taken.
-const COUNTS: [u32; 12] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96];
+const COUNTS: [u32; 14] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192];
 
 /// The most that errors ask for; contacts may need more.
 const MOST: f64 = 48.0;
@@ -139,7 +139,8 @@ mod tests {
     fn steps_too_long_for_contacts_become_half_as_long_and_longer_again_by_and_by() {
         assert_eq!(Accuracy::shorter(6), Some(12));
         assert_eq!(Accuracy::shorter(48), Some(96));
-        assert_eq!(Accuracy::shorter(96), None);
+        assert_eq!(Accuracy::shorter(96), Some(192));
+        assert_eq!(Accuracy::shorter(192), None);
         let touching = Accuracy { is_in_contact: true, ..ACCURACY };
         assert_eq!(touching.after(24, 0.0), 12);
     }

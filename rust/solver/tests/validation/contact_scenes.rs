@@ -212,14 +212,17 @@ fn two_plates_close_on_a_sheet_that_lies_askew() {
 }
 
 #[test]
-fn twelve_layers_fall_on_each_other() {
+fn twelve_layers_fall_on_each_other_and_do_not_bounce() {
     let layer = |number: u32| {
         let height = 0.01 * f64::from(number + 1);
         let cloth = placed(patch([8, 8], 0.2, springs(5.0)), |x| x + height * Vector::z());
         colliding(cloth, 0.0045, 0.3)
     };
     let simulation = among((0..12).map(layer).collect(), vec![floor(0.3)], bdf2());
-    let simulation = is_sound("layers", simulation, 24, nothing);
+    let simulation = is_sound("layers", simulation, 24, |simulation| {
+        let highest = simulation.positions(11).iter().map(|x| x.z).fold(0.0, f64::max);
+        assert!(highest < 0.125, "the pile of 0.12 m reaches {highest} m");
+    });
     let heights: Vec<f64> =
         (0..12).map(|cloth| crate::contact_things::mean(&simulation.positions(cloth)).z).collect();
     assert!(heights.is_sorted(), "the layers have changed places: {heights:?}");

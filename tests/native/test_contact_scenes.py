@@ -309,16 +309,11 @@ def the_same_for_any_threads(baked, folder, overrides=()):
             assert overrides or len(mine) == len(same), text
 
 
-def whole(baked, shut=()):
-    """Check that all is finite and that no edge is longer than its rate allows, but for a little.
-
-    In frames in which bodies overlap, those that are pressed out between them are as long as they must be.
-    """
+def whole(baked):
+    """Check that all is finite and that no edge is longer than its rate allows, but for a little."""
     for frame, positions in zip(baked.numbers, baked.frames, strict=True):
         assert np.isfinite(positions).all(), f"{baked.name}, frame {frame}: not finite"
     for frame, strain in zip(baked.numbers, baked.strains, strict=True):
-        if frame in shut:
-            continue
         assert strain <= BEYOND_RATE, f"{baked.name}, frame {frame}: {strain:.3%} beyond the rate"
 
 
@@ -450,7 +445,7 @@ def test_what_is_tangled_comes_free_within_48_frames_and_stays_free(name, bake_o
 
 @pytest.mark.parametrize("name", RECOVERIES)
 def test_what_is_tangled_stays_whole_and_does_not_fly_away(name, bake_once):
-    whole(bake_once(name), SHUT.get(name, ()))
+    whole(bake_once(name))
     stays_calm(bake_once(name))
 
 

@@ -36,7 +36,7 @@ pub(super) struct Body {
     /// 1 if it is a closed mesh whose faces are seen from outside, -1 if from inside, 0 if it is none.
     pub(super) facing: f64,
     /// Whether it collides with itself.
-    with_self: bool,
+    pub(super) with_self: bool,
 }
 
 /// A plane: the space behind it is filled.

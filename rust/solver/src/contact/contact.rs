@@ -6,15 +6,15 @@
 //! gap(x) = d + n·sum_i w_i (x_i - start_i)                                (m)
 //! F(p)   = k p²/(2 s) for p < s,  k (p - s/2) beyond      p = reach - gap, s = reach/4   (N)
 //! k      = 10 m/h² min(100, max(1, (reach/2d)²))                          (N/m)
-//! f      = max(0, F(p) + c (F(p) - F(p0)))                                (N)
+//! f      = max(0, F(p) + c (F(p) - F(p0)))      c = 9                     (N)
 //! ```
 //!
 //! with the mass m that the contact feels. Without the ramp over s a resting sheet trembles. The second part of f is a
 //! dashpot beside the spring, from the depth p0 at the step's start: without it the lower contacts of a stack, which stop
-//! what falls on them, throw it up again. It never pulls. The potential of f is convex, and so is the step.
+//! what falls on them, throw it up again. It never pulls. What starts behind has F(p0) = 0: it comes out slowly anyway. The potential of f is convex, and so is the step.
 //!
-//! Source: Li et al. 2020 for smooth contact in an implicit step; Hunt & Crossley 1975 for a dashpot that is as stiff as
-//! its spring; the law is our own.
+//! Source: Li et al. 2020 for smooth contact in an implicit step, and for a dashpot in proportion to the spring's tangent;
+//! the law is our own.
 
 use boucle_geometry::Vector;
 use boucle_geometry::distance::Closest;
@@ -26,10 +26,11 @@ use super::paths::Paths;
 /// Stiffness of a contact, in units of m/h².
 const STIFFNESS: f64 = 10.0;
 
-/// How many times stiffer its dashpot makes it for a step: 50 layers that fall come to rest; with less, they bounce.
+/// Stiffness of the dashpot over a step, in units of the spring's: 50 layers that fall come to rest; with less, they bounce.
 const DAMPING: f64 = 9.0;
 
-/// The most by which closeness makes it stiffer.
+/// The most by which closeness makes it stiffer. With the dashpot that is 1e4 m/h²: what single precision loses of the
+/// inertia's part is below what conjugate gradients leave.
 const STIFFEST: f64 = 100.0;
 
 /// The part of the reach over which the force sets in.
@@ -229,6 +230,7 @@ impl Contact {
     pub(super) fn force(&self, gap: f64) -> [f64; 2] {
         let depth = self.reach - gap;
         let ramp = RAMP * self.reach.abs();
+        // Without a reach there is no ramp: min leaves out what is no number.
         let slope = self.stiffness * (depth / ramp).min(1.0);
         let force =
             if depth < ramp { 0.5 * slope * depth } else { self.stiffness * (depth - 0.5 * ramp) };
@@ -283,5 +285,38 @@ impl Contact {
         let least =
             if by_ramp < ramp { by_ramp } else { self.relief / self.stiffness + 0.5 * ramp };
         relieved((self.reach - gap).max(least)) - relieved(least)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Between two particles of 1 kg that start 1 mm apart, with a reach of 2 mm.
+    fn pressed() -> Contact {
+        let weights = [1.0, -1.0, 0.0, 0.0];
+        let mut contact = Contact::parting([0, 1, 1, 1], weights, Vector::z(), 0.002);
+        contact.distance = 0.001;
+        contact.stiffen(&[1.0, 1.0], 0.01);
+        contact
+    }
+
+    #[test]
+    fn a_dashpot_does_not_change_the_force_of_what_stays_where_it_is() {
+        let contact = pressed();
+        let spring =
+            Contact { stiffness: contact.stiffness / (1.0 + DAMPING), relief: 0.0, ..contact };
+        let ([force, slope], [undamped, soft]) = (contact.force(0.001), spring.force(0.001));
+        assert!((force - undamped).abs() < 1e-9 * undamped);
+        assert!((slope - (1.0 + DAMPING) * soft).abs() < 1e-9 * slope);
+    }
+
+    #[test]
+    fn a_dashpot_resists_what_comes_nearer_and_lets_go_of_what_opens_without_a_pull() {
+        let contact = pressed();
+        let [[nearer, _], [rest, _], [away, slope]] =
+            [0.0009, 0.001, 0.0012].map(|gap| contact.force(gap));
+        assert!(nearer > 1.5 * rest, "{nearer}, {rest}");
+        assert!(away == 0.0 && slope == 0.0, "{away}, {slope}");
     }
 }

@@ -47,7 +47,7 @@ impl Contacts {
         self.fit(|body| body.radius + body.thickness.max(body.slack));
         let fit = start.elapsed();
         let Self { bodies, paths, .. } = &*self;
-        let found = self.search_contacts(|candidate, found: &mut Found| {
+        let found = self.search(|candidate, found: &mut Found| {
             let near = Near::new(&candidate, bodies, paths);
             let contact = near.contact(&candidate, bodies);
             if contact.is_some() || near.is_to_be_watched() {

@@ -9,7 +9,7 @@ use boucle_geometry::Vector;
 use super::bodies::Bodies;
 use super::contact::OF_REST;
 
-/// More than the part of the distance at rest that is kept, by what rounding may lose.
+/// More than the part of the distance at rest that is kept: what rounding loses, but very far from the origin.
 pub(super) const OF_REST_AT_MOST: f32 = OF_REST as f32 + 0.01;
 
 /// How much less is enough.
@@ -24,8 +24,10 @@ pub(super) struct Easing {
 impl Easing {
     /// Of bodies that are thicker than their points may stray; nothing, if there are none.
     pub(super) fn of(bodies: &Bodies) -> Option<Self> {
-        let less =
-            bodies.each.iter().map(|body| 2.0 * (body.thickness - body.slack).max(0.0) as f32);
+        let less = bodies.each.iter().map(|body| {
+            let more = if body.with_self { (body.thickness - body.slack).max(0.0) } else { 0.0 };
+            2.0 * more as f32
+        });
         let by: Vec<f32> = less.take(bodies.cloth_count()).collect();
         if by.iter().all(|&by| by == 0.0) {
             return None;

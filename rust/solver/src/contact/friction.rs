@@ -14,7 +14,7 @@
 /// Speed (m/s) below which a contact sticks.
 const CREEP: f64 = 1e-4;
 
-/// The most that c is, in units of m/h'²: single precision bears no more. What sticks slips by this part of the way that it
+/// The most that c is, in units of m/h'²: single precision bears no more of what lasts from step to step. What sticks slips by this part of the way that it
 /// would go without friction.
 pub(super) const FIRMEST: f64 = 2000.0;
 

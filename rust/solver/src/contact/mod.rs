@@ -125,6 +125,11 @@ impl Contacts {
         self.near.len() as u32
     }
 
+    /// Whether anything pressed in the step before.
+    pub(crate) fn remembers(&self) -> bool {
+        !self.remembered.is_empty()
+    }
+
     /// Vertices whose way was cut short, once for each cut, since this was last asked.
     pub(crate) fn take_clipped(&mut self) -> u32 {
         std::mem::take(&mut self.clipped)

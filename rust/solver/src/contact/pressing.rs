@@ -8,8 +8,8 @@
 //! a = m/h'²        free depth p + f/a        slip with friction |u| - mu f/a, after an iteration without
 //! ```
 //!
-//! The first takes friction by what the same contact pressed with in the last step of the frame; later ones take it at the
-//! slip that they find. Where all have met, the tangent is that of the law.
+//! The first takes friction by what the same contact pressed with in the step before, within the frame; later ones take it
+//! at the slip that they find. Where all have met, the tangent is that of the law.
 
 use boucle_geometry::Vector;
 use rayon::prelude::*;
@@ -35,8 +35,15 @@ pub(super) struct Pressure {
 /// What contacts pressed with in the step before.
 #[derive(Debug, Default)]
 pub(super) struct Remembered {
-    /// Points of contacts, sorted, and forces (N).
-    forces: Vec<([u32; 4], f64)>,
+    /// Contacts, sorted, and forces (N). Several pieces of what is tangled may be one to this.
+    forces: Vec<(Name, f64)>,
+}
+
+/// What a contact is told by: its points, and which of them have a part in the first feature.
+type Name = ([u32; 4], [bool; 4]);
+
+fn name(contact: &Contact) -> Name {
+    (contact.points, contact.weights.map(|weight| weight > 0.0))
 }
 
 impl Remembered {
@@ -44,13 +51,18 @@ impl Remembered {
     pub(super) fn renew(&mut self, contacts: &[Contact], pressures: &[Pressure]) {
         self.forces.clear();
         let pressing = contacts.iter().zip(pressures).filter(|(_, pressure)| pressure.force > 0.0);
-        self.forces.extend(pressing.map(|(contact, pressure)| (contact.points, pressure.force)));
-        self.forces.sort_unstable_by_key(|(points, _)| *points);
+        self.forces.extend(pressing.map(|(contact, pressure)| (name(contact), pressure.force)));
+        self.forces.sort_by_key(|(name, _)| *name);
+        self.forces.dedup_by_key(|(name, _)| *name);
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.forces.is_empty()
     }
 
     /// The force (N) of a contact; 0 if it did not press.
     pub(super) fn of(&self, contact: &Contact) -> f64 {
-        let place = self.forces.binary_search_by_key(&contact.points, |(points, _)| *points);
+        let place = self.forces.binary_search_by_key(&name(contact), |(name, _)| *name);
         place.map_or(0.0, |place| self.forces[place].1)
     }
 }

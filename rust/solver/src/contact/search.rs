@@ -27,22 +27,22 @@ impl Contacts {
     }
 
     /// Shows `visit` each candidate that may come as near on its way as boxes were fitted around both features, each once,
-    /// with what its task has found so far; only those with a changed point, if it is said which are. Returns the findings
-    /// of all tasks in order.
+    /// with what its task has found so far; of pairs that lay nearer at rest, only those that may come nearer than they keep
+    /// there or may stray. Returns the findings of all tasks in order.
     pub(super) fn search<T: Default + Send>(
-        &self,
-        is_changed: Option<&[bool]>,
-        visit: impl Fn(Candidate, &mut T) + Sync,
-    ) -> Vec<T> {
-        self.searching(is_changed, None, visit).everything()
-    }
-
-    /// The same, but for pairs of a cloth that lay nearer to each other at rest than they are to be.
-    pub(super) fn search_contacts<T: Default + Send>(
         &self,
         visit: impl Fn(Candidate, &mut T) + Sync,
     ) -> Vec<T> {
         self.searching(None, self.bodies.easing.as_ref(), visit).everything()
+    }
+
+    /// The same for candidates with a changed point, wherever they lay at rest.
+    pub(super) fn search_changed<T: Default + Send>(
+        &self,
+        is_changed: &[bool],
+        visit: impl Fn(Candidate, &mut T) + Sync,
+    ) -> Vec<T> {
+        self.searching(Some(is_changed), None, visit).everything()
     }
 
     /// The same for candidates of a cloth and a collider.

@@ -64,7 +64,7 @@ impl Pairs {
 
     /// What is around both features of some of the pairs, or less if they lay near each other at rest.
     #[inline(always)]
-    fn around<S: Simd>(&self, simd: S, kind: Kind, is_eased: bool, vector: usize) -> Lanes<S> {
+    fn needed<S: Simd>(&self, simd: S, kind: Kind, is_eased: bool, vector: usize) -> Lanes<S> {
         let around = lanes(simd, &self.around, vector);
         if !is_eased {
             return around;
@@ -83,7 +83,7 @@ impl Pairs {
 
     /// By how much (m) some of the pairs stay apart along their directions at the least, beyond what is around both.
     #[inline(always)]
-    fn slack<S: Simd>(&self, simd: S, kind: Kind, is_eased: bool, vector: usize) -> Lanes<S> {
+    fn spare<S: Simd>(&self, simd: S, kind: Kind, is_eased: bool, vector: usize) -> Lanes<S> {
         let x = rows(simd, &self.places, vector);
         let steps = rows(simd, &self.steps, vector);
         let direction = match kind {
@@ -103,7 +103,7 @@ impl Pairs {
                 (zero.min(b) - c.max(d), change.max(most_change(steps[1], [steps[2], steps[3]])))
             }
         };
-        let needed = self.around(simd, kind, is_eased, vector) + change.sqrt();
+        let needed = self.needed(simd, kind, is_eased, vector) + change.sqrt();
         gap - needed * direction.square().sqrt()
     }
 }
@@ -165,7 +165,7 @@ impl<C: Iterator<Item = Candidate>, V: FnMut(Candidate)> WithSimd for Sifting<'_
         let none = [0.0; COUNT];
         let mut pairs = Pairs { places: zero, steps: zero, around: none, rests: zero, least: none };
         let mut shown = [Candidate::NONE; COUNT];
-        let mut slack = [0.0; COUNT];
+        let mut spare = [0.0; COUNT];
         loop {
             let mut count = 0;
             while count < COUNT
@@ -184,12 +184,12 @@ impl<C: Iterator<Item = Candidate>, V: FnMut(Candidate)> WithSimd for Sifting<'_
             }
             let kind = shown[0].kind;
             for vector in 0..count.div_ceil(S::F32_LANES) {
-                let slack = &mut S::as_mut_simd_f32s(&mut slack).0[vector];
-                *slack = pairs.slack(simd, kind, easing.is_some(), vector).values;
+                let spare = &mut S::as_mut_simd_f32s(&mut spare).0[vector];
+                *spare = pairs.spare(simd, kind, easing.is_some(), vector).values;
             }
-            for (candidate, slack) in shown[..count].iter().zip(slack) {
+            for (candidate, spare) in shown[..count].iter().zip(spare) {
                 // What is no number does not prove anything.
-                if !(slack > 0.0) {
+                if !(spare > 0.0) {
                     (self.visit)(*candidate);
                 }
             }

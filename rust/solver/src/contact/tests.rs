@@ -492,13 +492,15 @@ fn truncated_ways_lead_through_nothing_by_brute_force() {
             vec![soup(4, 1000 * seed)],
             vec![folded(seed)],
             vec![folded(seed), above(soup(3, 77 + seed))],
+            vec![thick(folded(seed))],
         ] {
             for amplitude in [0.003, 0.03, 0.3] {
                 let wanted = |starts: &[Vector]| moved(starts, amplitude, 31 * seed);
-                // As expected, a little off it, and not expected at all.
+                // As expected, a little off it, off by more than the slack of what is thick, and not expected at all.
                 let little = |starts: &[Vector]| moved(&wanted(starts), 0.002, 5);
+                let more = |starts: &[Vector]| moved(&wanted(starts), 0.02, 5);
                 let still = |starts: &[Vector]| starts.to_vec();
-                let expectations: [Expected<'_>; 3] = [&wanted, &little, &still];
+                let expectations: [Expected<'_>; 4] = [&wanted, &little, &more, &still];
                 for (number, expected) in expectations.iter().enumerate() {
                     let (contacts, clipped, [starts, _, ends]) =
                         truncated(&cloths, expected, wanted);

@@ -90,6 +90,7 @@ impl Contacts {
         let cuts = watched.filter(|candidate| is_concerned(candidate));
         let mut cuts: Vec<Cut> =
             cuts.filter_map(|candidate| cut(candidate, bodies, paths)).collect();
+        // What is not watched keeps the slack of both along a direction: twice the gap that must be left is still there.
         let is_astray = |point: usize| {
             let slack = bodies.body(point as u32).slack - 2.0 * MOST;
             (paths.step[point] - expected[point]).norm_squared() > slack * slack
@@ -101,7 +102,7 @@ impl Contacts {
             // Pairs with a point that has changed and one that is astray: all are found from the fewer of both.
             let count = |marks: &[bool]| marks.iter().filter(|is_marked| **is_marked).count();
             let marks = if count(&is_astray) < count(is_changed) { &is_astray } else { is_changed };
-            let found = self.search(Some(marks), |candidate, found: &mut Vec<Cut>| {
+            let found = self.search_changed(marks, |candidate, found: &mut Vec<Cut>| {
                 found.extend(cut(&candidate, bodies, paths));
             });
             cuts.extend(found.into_iter().flatten());

@@ -67,8 +67,9 @@ const STOP: Stop = Stop { tolerance: 0.06, least_iterations: 1, most_iterations:
 /// No more Newton iterations once one gains no more than the square of this part of all.
 const LEFT: f64 = 0.2;
 
-/// Iterations of Newton in contact: friction needs the pressure of one before it.
+/// Iterations of Newton in contact: friction needs the pressure of one before it, or of the step before.
 const LEAST_IN_CONTACT: usize = 3;
+const LEAST_IN_NEW_CONTACT: usize = 4;
 const MOST_IN_CONTACT: usize = 6;
 
 /// How often a step is taken up again where it was cut short, if more than one in so many particles were.
@@ -172,8 +173,11 @@ impl Implicit {
 
     /// Newton's iterations from the present guess.
     fn approach(&mut self, system: &System, contacts: &mut Contacts, step: f64, h: f64) {
-        let least = if contacts.count() > 0 { LEAST_IN_CONTACT } else { 1 };
-        let most = if contacts.count() > 0 { MOST_IN_CONTACT } else { NEWTON };
+        let [least, most] = match (contacts.count(), contacts.remembers()) {
+            (0, _) => [1, NEWTON],
+            (_, true) => [LEAST_IN_CONTACT, MOST_IN_CONTACT],
+            (_, false) => [LEAST_IN_NEW_CONTACT, MOST_IN_CONTACT],
+        };
         self.gradients.start();
         let mut gained = 0.0;
         for iteration in 1..=most {

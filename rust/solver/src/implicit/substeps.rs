@@ -10,7 +10,7 @@
 //! with the cloths' size (m). Few numbers are used, and fewer steps only if they are clearly enough, because each change
 //! of the step factors the matrix anew. A pin that is to change its velocity has an error before the frame begins. A frame
 //! in which cloth snaps taut shows it only at its end: if it should have had twice as many steps, it is done once more. So
-//! is, with twice the steps, a frame whose contacts cut too many ways short.
+//! is, with up to twice the steps, a frame whose contacts cut too many ways short.
 
 use crate::contact::LONGEST_WAY;
 
@@ -18,7 +18,7 @@ use crate::contact::LONGEST_WAY;
 const COUNTS: [u32; 14] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192];
 
 /// The most that errors ask for; contacts may need more.
-const MOST: f64 = 48.0;
+const MOST: u32 = 48;
 
 /// Steps of a first frame.
 const FIRST: u32 = 4;
@@ -60,13 +60,20 @@ impl Accuracy {
     /// Steps after a frame of so many with a mean error (m).
     pub(crate) fn after(self, substeps: u32, error: f64) -> u32 {
         let wanted = f64::from(substeps) * (error / (SCALE * self.tolerance * self.size)).cbrt();
-        let mut count = at_least(wanted.min(MOST));
-        if self.is_in_contact {
-            // More were taken because contact asked for them: half of them may do now.
-            let calmer = at_least(0.5 * f64::from(substeps));
-            count = count.clamp(LEAST_IN_CONTACT, MOST_IN_CONTACT).max(calmer);
+        let [least, most] = if self.is_in_contact {
+            [LEAST_IN_CONTACT, MOST_IN_CONTACT]
+        } else {
+            [COUNTS[0], MOST]
+        };
+        let count = at_least(wanted.min(f64::from(most))).max(least);
+        if substeps > most {
+            // Contact asked for so many: half of them may do now.
+            count.max(at_least(0.5 * f64::from(substeps)))
+        } else if count < substeps && wanted > CLEARLY * f64::from(count) {
+            substeps
+        } else {
+            count
         }
-        if count < substeps && wanted > CLEARLY * f64::from(count) { substeps } else { count }
     }
 
     /// Steps with which a frame is done once more whose steps were too long for its contacts, if there may be more.
@@ -108,7 +115,7 @@ mod tests {
 
     #[test]
     fn the_error_allowed_keeps_the_number_of_steps() {
-        for count in COUNTS {
+        for count in COUNTS.into_iter().filter(|&count| count <= MOST) {
             assert_eq!(ACCURACY.after(count, 0.9 * SCALE * 5e-3), count);
         }
     }
@@ -136,13 +143,17 @@ mod tests {
     }
 
     #[test]
-    fn steps_too_long_for_contacts_become_half_as_long_and_longer_again_by_and_by() {
+    fn steps_too_long_for_contacts_become_shorter_and_longer_again_by_and_by() {
         assert_eq!(Accuracy::shorter(6), Some(12));
         assert_eq!(Accuracy::shorter(48), Some(96));
         assert_eq!(Accuracy::shorter(96), Some(192));
         assert_eq!(Accuracy::shorter(192), None);
         let touching = Accuracy { is_in_contact: true, ..ACCURACY };
-        assert_eq!(touching.after(24, 0.0), 12);
+        for accuracy in [touching, ACCURACY] {
+            assert_eq!(accuracy.after(192, f64::INFINITY), 96);
+            assert_eq!(accuracy.after(96, 0.0), 48);
+        }
+        assert_eq!(touching.after(24, f64::INFINITY), 12);
     }
 
     #[test]

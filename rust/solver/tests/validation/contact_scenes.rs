@@ -219,7 +219,7 @@ fn twelve_layers_fall_on_each_other_and_do_not_bounce() {
         colliding(cloth, 0.0045, 0.3)
     };
     let simulation = among((0..12).map(layer).collect(), vec![floor(0.3)], bdf2());
-    let simulation = is_sound("layers", simulation, 24, |simulation| {
+    let simulation = is_sound("layers", simulation, 25, |simulation| {
         let highest = simulation.positions(11).iter().map(|x| x.z).fold(0.0, f64::max);
         assert!(highest < 0.125, "the pile of 0.12 m reaches {highest} m");
     });

@@ -45,6 +45,10 @@ const MOST_IN_CONTACT: u32 = 6;
 /// The fewest: what slides and stops is then right within a percent.
 const LEAST_IN_CONTACT: u32 = 4;
 
+/// The most that contacts ask for, but where something comes fast: there, so many times what its way alone asks for.
+const MOST_FOR_CONTACTS: u32 = 96;
+const MOST_FOR_WAY: f64 = 8.0;
+
 /// What the choice depends on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Accuracy {
@@ -80,6 +84,11 @@ impl Accuracy {
     pub(crate) fn shorter(substeps: u32) -> Option<u32> {
         let count = at_least(2.0 * f64::from(substeps));
         (count > substeps).then_some(count)
+    }
+
+    /// The most steps that contacts may ask for in a frame in which colliders and cloth go so far (m) towards each other.
+    pub(crate) fn most_for_contacts(way: f64) -> u32 {
+        at_least(MOST_FOR_WAY * way / LONGEST_WAY).max(MOST_FOR_CONTACTS)
     }
 
     /// Steps with which a frame is done once more, if far too few were taken.
@@ -148,6 +157,7 @@ mod tests {
         assert_eq!(Accuracy::shorter(48), Some(96));
         assert_eq!(Accuracy::shorter(96), Some(192));
         assert_eq!(Accuracy::shorter(192), None);
+        assert_eq!([0.0, 1.2, 2.5].map(Accuracy::most_for_contacts), [96, 96, 192]);
         let touching = Accuracy { is_in_contact: true, ..ACCURACY };
         for accuracy in [touching, ACCURACY] {
             assert_eq!(accuracy.after(192, f64::INFINITY), 96);

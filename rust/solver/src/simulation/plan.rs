@@ -118,7 +118,8 @@ impl Simulation {
     /// Whether a frame of so many steps may be done once more with more, if they are too long for its contacts.
     pub(super) fn may_shorten(&self, substeps: u32) -> bool {
         let is_free = self.method.is_implicit() && self.settings.step_size == StepSize::Auto;
-        is_free && Accuracy::shorter(substeps).is_some()
+        let way = self.contacts.longest_way(&self.state.velocity, self.frame_duration());
+        is_free && substeps < Accuracy::most_for_contacts(way)
     }
 }
 

@@ -11,7 +11,8 @@
 //!
 //! with the mass m that the contact feels. Without the ramp over s a resting sheet trembles. The second part of f is a
 //! dashpot beside the spring, from the depth p0 at the step's start: without it the lower contacts of a stack, which stop
-//! what falls on them, throw it up again. It never pulls. What starts behind has F(p0) = 0: it comes out slowly anyway. The potential of f is convex, and so is the step.
+//! what falls on them, throw it up again. It never pulls, and what starts behind has none: that comes out slowly anyway. The
+//! potential of f is convex, and so is the step.
 //!
 //! Source: Li et al. 2020 for smooth contact in an implicit step, and for a dashpot in proportion to the spring's tangent;
 //! the law is our own.

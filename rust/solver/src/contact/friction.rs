@@ -14,8 +14,8 @@
 /// Speed (m/s) below which a contact sticks.
 const CREEP: f64 = 1e-4;
 
-/// The most that c is, in units of m/h'²: single precision bears no more of what lasts from step to step. What sticks slips by this part of the way that it
-/// would go without friction.
+/// The most that c is, in units of m/h'²: single precision bears no more of what lasts from step to step. What sticks slips
+/// by this part of the way that it would go without friction.
 pub(super) const FIRMEST: f64 = 2000.0;
 
 /// The factor c (N/m) of a contact whose friction is of a strength mu f (N) and that slips by so much (m) in a step of h

@@ -50,8 +50,8 @@ def _take(folder: Path) -> int | None:
         try:
             folder.mkdir(parents=True, exist_ok=True)
             lock = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
-        except FileNotFoundError:
-            continue  # another bake has just taken the empty folder away
+        except (FileNotFoundError, FileExistsError):
+            continue  # another bake has just taken the empty folder away: before the file was made, or while we looked
         except OSError:
             return None
         try:

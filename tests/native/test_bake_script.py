@@ -370,3 +370,21 @@ def test_of_many_bakes_at_once_the_lock_lets_one_in(tmp_path):
     said = [process.communicate(timeout=60)[1] for process in processes]
     assert [process.returncode for process in processes] == [0, 0, 0, 0], said
     assert not list((tmp_path / "held").glob("*"))
+
+
+def test_a_folder_that_vanishes_while_it_is_made_is_made_again(tmp_path):
+    """`mkdir` finds the folder there, and looks once more when another bake has just taken it away."""
+    script = (
+        "import pathlib, bake_lock\n"
+        "make, calls = pathlib.Path.mkdir, []\n"
+        "def vanishing(path, **options):\n"
+        "    calls.append(path)\n"
+        "    if len(calls) == 1:\n"
+        "        raise FileExistsError(path)\n"
+        "    make(path, **options)\n"
+        "pathlib.Path.mkdir = vanishing\n"
+        "with bake_lock.held(pathlib.Path('held')):\n"
+        "    assert pathlib.Path('held', bake_lock.NAME).exists()\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(SCRIPTS)}
+    subprocess.run([sys.executable, "-c", script], cwd=tmp_path, env=environment, check=True)

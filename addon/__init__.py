@@ -8,12 +8,14 @@ import bpy
 from . import handlers, native, preferences
 from .bridge import live, runtime, thickness_view
 from .core.transaction import Step, apply_all, revert_all
-from .operators import add, bake
+from .operators import add, bake, copy_from_cloth
 from .operators import cache as cache_operators
 from .operators import cloth as cloth_operators
+from .operators import presets as preset_operators
 from .panels import cache as cache_panels
 from .panels import cloth as cloth_panels
 from .panels import collisions, forces, shape, solver, springs
+from .panels import presets as preset_panels
 from .properties import cloth as cloth_properties
 
 _CLASSES = (
@@ -21,8 +23,11 @@ _CLASSES = (
     *preferences.CLASSES,
     *add.CLASSES,
     *cloth_operators.CLASSES,
+    *preset_operators.CLASSES,
+    *copy_from_cloth.CLASSES,
     *bake.CLASSES,
     *cache_operators.CLASSES,
+    *preset_panels.CLASSES,
     *cloth_panels.CLASSES,
     *springs.CLASSES,
     *shape.CLASSES,

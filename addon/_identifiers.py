@@ -14,13 +14,19 @@ class Operators:
     ADOPT_BAKE = "boucle.adopt_bake"
     RESET = "boucle.reset"
     CHECK = "boucle.check"
+    APPLY_PRESET = "boucle.apply_preset"
+    SAVE_PRESET = "boucle.save_preset"
+    DELETE_PRESET = "boucle.delete_preset"
+    COPY_FROM_CLOTH = "boucle.copy_from_cloth"
 
 
 class Panels:
     """Panel names."""
 
     CLOTH = "BOUCLE_PT_cloth"
+    PRESETS = "BOUCLE_PT_presets"
     SPRINGS = "BOUCLE_PT_springs"
+    STIFFNESS = "BOUCLE_PT_stiffness"
     DAMPING = "BOUCLE_PT_damping"
     DEFORMATION = "BOUCLE_PT_deformation"
     SHAPE = "BOUCLE_PT_shape"
@@ -31,6 +37,36 @@ class Panels:
     SOLVER = "BOUCLE_PT_solver"
     SOLVER_ADVANCED = "BOUCLE_PT_solver_advanced"
     CACHE = "BOUCLE_PT_cache"
+
+
+class PanelOrder:
+    """Where each panel stands among its siblings (`bl_order`), whatever was registered first; gaps are for new ones."""
+
+    # below Boucle Cloth
+    SPRINGS = 10
+    SHAPE = 20
+    COLLISIONS = 30
+    TEARING = 40
+    FORCES = 50
+    SOLVER = 60
+    CACHE = 70
+    OVERLAY = 80
+    # below Springs
+    STIFFNESS = 10
+    DAMPING = 20
+    DEFORMATION = 30
+    # below Shape
+    SEWING = 20
+    REST_SHAPE = 30
+    SHRINK = 40
+    PRESSURE = 50
+    # below Collisions
+    OBJECT_COLLISIONS = 10
+    SELF_COLLISIONS = 20
+    # below Forces
+    FIELD_WEIGHTS = 10
+    # below Solver
+    SOLVER_ADVANCED = 90
 
 
 EXTENSION = "boucle"

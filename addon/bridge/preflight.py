@@ -141,7 +141,7 @@ def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem
 
 def _unsupported(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
     """What a scene may hold and this version leaves out: said, never silently ignored."""
-    if any(modifier.type == "CLOTH" for modifier in obj.modifiers):
+    if any(m.type == "CLOTH" and (m.show_viewport or m.show_render) for m in obj.modifiers):
         yield _warning(f'"{obj.name}" has a Cloth modifier, too: remove one of the two')
     fields = [o.name for o in scene.objects if o.field is not None and o.field.type != "NONE"]
     if fields:

@@ -10,7 +10,9 @@ from bpy_extras.object_utils import AddObjectHelper, object_data_add
 from mathutils import Matrix
 
 from .._identifiers import Operators
-from ..bridge import cloth
+from ..bridge import cloth, presets
+from ..core.preset import NONE
+from ..core.refusal import Refusal
 
 PIN_GROUP = "Pin"
 _AXES = {
@@ -19,6 +21,17 @@ _AXES = {
     "yz": ((0, 0), (1, 0), (0, 1)),
 }
 """Rows x, y, z: how much of the grid's first and second axis goes into each."""
+_choices: list[tuple[str, str, str]] = []
+"""The presets that were last offered: Blender does not keep the texts of a list that is made for it."""
+
+
+def _offered(_operator: Operator, _context: Context | None) -> list[tuple[str, str, str]]:
+    names = [*presets.shipped_names(), *presets.own_names()]
+    _choices[:] = [
+        (NONE, "None", "The settings of a new cloth"),
+        *((name, name, presets.description(name)) for name in names),
+    ]
+    return _choices
 
 
 class BOUCLE_OT_add_cloth(AddObjectHelper, Operator):
@@ -67,6 +80,9 @@ class BOUCLE_OT_add_cloth(AddObjectHelper, Operator):
         ),
         options={"ENUM_FLAG"}, default={"top_left", "top_right"},
     )  # fmt: skip
+    preset: EnumProperty(
+        name="Preset", description="The preset whose settings the cloth begins with", items=_offered
+    )
 
     @classmethod
     def poll(cls, context: Context) -> bool:
@@ -79,6 +95,11 @@ class BOUCLE_OT_add_cloth(AddObjectHelper, Operator):
     def execute(self, context: Context) -> set[str]:
         """Make the mesh, the object, its pin group and its settings."""
         obj = object_data_add(context, self._make_mesh(), operator=self)
+        if self.preset not in {"", NONE}:  # empty: a preset that has been deleted since
+            try:
+                presets.apply(obj, self.preset)
+            except Refusal as refusal:
+                self.report({"WARNING"}, str(refusal))
         pins = pinned(self.vertices_x, self.vertices_y, self.pins)
         if pins:
             obj.vertex_groups.new(name=PIN_GROUP).add(pins, 1.0, "REPLACE")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bpy.types import Context, Panel
 
-from .._identifiers import Operators, Panels
+from .._identifiers import Operators, PanelOrder, Panels
 from .cloth import PhysicsPanel, draw_text
 
 
@@ -14,6 +14,8 @@ class BOUCLE_PT_cache(PhysicsPanel, Panel):
     bl_idname = Panels.CACHE
     bl_parent_id = Panels.CLOTH
     bl_label = "Cache"
+    bl_order = PanelOrder.CACHE
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Context) -> None:
         """Lay out."""

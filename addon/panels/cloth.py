@@ -8,6 +8,7 @@ import bpy
 from bpy.types import Context, Panel
 
 from .._identifiers import Operators, Panels
+from .presets import draw_popover
 
 _LETTER = 7.0
 """Width (pixels) of a letter of the default font at scale 1."""
@@ -26,11 +27,13 @@ class PhysicsPanel:
         obj = context.object
         return obj is not None and obj.type == "MESH" and obj.boucle.enabled
 
-    def column(self) -> bpy.types.UILayout:
-        """A column in Blender's property layout."""
+    def column(self, settings: bpy.types.PropertyGroup | None = None) -> bpy.types.UILayout:
+        """A column in Blender's property layout; dim, as Blender's own cloth is, while a bake of these settings plays."""
         self.layout.use_property_split = True
         self.layout.use_property_decorate = True
-        return self.layout.column()
+        outer = self.layout.column()
+        outer.active = settings is None or not settings.is_baked
+        return outer.column()
 
 
 def draw_text(layout: bpy.types.UILayout, text: str, context: Context, icon: str = "NONE") -> None:
@@ -49,14 +52,20 @@ class BOUCLE_PT_cloth(PhysicsPanel, Panel):
     bl_idname = Panels.CLOTH
     bl_label = "Boucle Cloth"
 
+    def draw_header_preset(self, _context: Context) -> None:
+        """The presets, at the right end of the header."""
+        draw_popover(self.layout)
+
     def draw(self, context: Context) -> None:
         """Lay out."""
         settings = context.object.boucle
-        column = self.column()
+        column = self.column(settings)
         column.prop(settings, "mass_mode")
         by_area = settings.mass_mode == "density"
         column.prop(settings, "density" if by_area else "mass_per_vertex")
         self.layout.operator(Operators.CHECK, icon="CHECKMARK")
+        if any(modifier.type == "CLOTH" for modifier in context.object.modifiers):
+            self.layout.operator(Operators.COPY_FROM_CLOTH, icon="COPYDOWN")
 
 
 def draw_button(panel: Panel, context: Context) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bpy.types import Context, Panel
 
-from .._identifiers import Panels
+from .._identifiers import PanelOrder, Panels
 from .cloth import PhysicsPanel
 
 
@@ -14,12 +14,16 @@ class BOUCLE_PT_collisions(PhysicsPanel, Panel):
     bl_idname = Panels.COLLISIONS
     bl_parent_id = Panels.CLOTH
     bl_label = "Collisions"
+    bl_order = PanelOrder.COLLISIONS
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Context) -> None:
         """Lay out."""
-        column = self.column()
+        settings = context.object.boucle
+        column = self.column(settings)
+        column.active = settings.object_collision or settings.self_collision
         for name in ("thickness", "show_thickness", "friction"):
-            column.prop(context.object.boucle, name)
+            column.prop(settings, name)
 
 
 class BOUCLE_PT_object_collisions(PhysicsPanel, Panel):
@@ -28,6 +32,7 @@ class BOUCLE_PT_object_collisions(PhysicsPanel, Panel):
     bl_idname = Panels.OBJECT_COLLISIONS
     bl_parent_id = Panels.COLLISIONS
     bl_label = "Object Collisions"
+    bl_order = PanelOrder.OBJECT_COLLISIONS
 
     def draw_header(self, context: Context) -> None:
         """The switch."""
@@ -36,7 +41,7 @@ class BOUCLE_PT_object_collisions(PhysicsPanel, Panel):
     def draw(self, context: Context) -> None:
         """Lay out."""
         obj = context.object
-        column = self.column()
+        column = self.column(obj.boucle)
         column.active = obj.boucle.object_collision
         column.prop_search(obj.boucle, "collision_group", obj, "vertex_groups")
         column.prop(obj.boucle, "collision_collection")
@@ -48,6 +53,7 @@ class BOUCLE_PT_self_collisions(PhysicsPanel, Panel):
     bl_idname = Panels.SELF_COLLISIONS
     bl_parent_id = Panels.COLLISIONS
     bl_label = "Self Collisions"
+    bl_order = PanelOrder.SELF_COLLISIONS
 
     def draw_header(self, context: Context) -> None:
         """The switch."""
@@ -56,7 +62,7 @@ class BOUCLE_PT_self_collisions(PhysicsPanel, Panel):
     def draw(self, context: Context) -> None:
         """Lay out."""
         obj = context.object
-        column = self.column()
+        column = self.column(obj.boucle)
         column.active = obj.boucle.self_collision
         column.prop_search(obj.boucle, "self_collision_group", obj, "vertex_groups")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bpy.types import Context, Panel
 
-from .._identifiers import Panels
+from .._identifiers import PanelOrder, Panels
 from .cloth import PhysicsPanel
 
 
@@ -14,13 +14,14 @@ class BOUCLE_PT_forces(PhysicsPanel, Panel):
     bl_idname = Panels.FORCES
     bl_parent_id = Panels.CLOTH
     bl_label = "Forces"
+    bl_order = PanelOrder.FORCES
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Context) -> None:
         """Lay out."""
         obj = context.object
         settings = obj.boucle
-        column = self.column()
+        column = self.column(settings)
         column.prop(settings, "use_wind")
         wind = column.column()
         wind.active = settings.use_wind

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bpy.types import Context, Panel
 
-from .._identifiers import Panels
+from .._identifiers import PanelOrder, Panels
 from .cloth import PhysicsPanel, draw_text
 
 
@@ -14,11 +14,12 @@ class BOUCLE_PT_solver(PhysicsPanel, Panel):
     bl_idname = Panels.SOLVER
     bl_parent_id = Panels.CLOTH
     bl_label = "Solver"
+    bl_order = PanelOrder.SOLVER
 
     def draw(self, context: Context) -> None:
         """Lay out."""
         settings = context.object.boucle
-        column = self.column()
+        column = self.column(settings)
         column.prop(settings, "integrator")
         if settings.is_implicit:
             quality = column.column()
@@ -39,12 +40,13 @@ class BOUCLE_PT_solver_advanced(PhysicsPanel, Panel):
     bl_idname = Panels.SOLVER_ADVANCED
     bl_parent_id = Panels.SOLVER
     bl_label = "Advanced"
+    bl_order = PanelOrder.SOLVER_ADVANCED
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Context) -> None:
         """Lay out."""
         settings = context.object.boucle
-        column = self.column()
+        column = self.column(settings)
         column.active = settings.is_implicit
         column.prop(settings, "linear_solver")
 

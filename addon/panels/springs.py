@@ -4,22 +4,38 @@ from __future__ import annotations
 
 from bpy.types import Context, Panel
 
-from .._identifiers import Panels
+from .._identifiers import PanelOrder, Panels
 from .cloth import PhysicsPanel
 
 
 class BOUCLE_PT_springs(PhysicsPanel, Panel):
-    """Stiffness"""
+    """What the springs are, and their stiffness, damping and deformation below"""
 
     bl_idname = Panels.SPRINGS
     bl_parent_id = Panels.CLOTH
     bl_label = "Springs"
+    bl_order = PanelOrder.SPRINGS
 
     def draw(self, context: Context) -> None:
         """Lay out."""
-        column = self.column()
-        for name in ("stretch", "shear", "bend", "stiffness_from"):
-            column.prop(context.object.boucle, name)
+        settings = context.object.boucle
+        self.column(settings).prop(settings, "stiffness_from")
+
+
+class BOUCLE_PT_stiffness(PhysicsPanel, Panel):
+    """Stiffness"""
+
+    bl_idname = Panels.STIFFNESS
+    bl_parent_id = Panels.SPRINGS
+    bl_label = "Stiffness"
+    bl_order = PanelOrder.STIFFNESS
+
+    def draw(self, context: Context) -> None:
+        """Lay out."""
+        settings = context.object.boucle
+        column = self.column(settings)
+        for name in ("stretch", "shear", "bend"):
+            column.prop(settings, name)
 
 
 class BOUCLE_PT_damping(PhysicsPanel, Panel):
@@ -28,11 +44,12 @@ class BOUCLE_PT_damping(PhysicsPanel, Panel):
     bl_idname = Panels.DAMPING
     bl_parent_id = Panels.SPRINGS
     bl_label = "Damping"
+    bl_order = PanelOrder.DAMPING
 
     def draw(self, context: Context) -> None:
         """Lay out."""
         settings = context.object.boucle
-        column = self.column()
+        column = self.column(settings)
         column.prop(settings, "damping_per_kind")
         if settings.damping_per_kind:
             for name in ("damping_stretch", "damping_shear", "damping_bend"):
@@ -49,15 +66,16 @@ class BOUCLE_PT_deformation(PhysicsPanel, Panel):
     bl_idname = Panels.DEFORMATION
     bl_parent_id = Panels.SPRINGS
     bl_label = "Deformation"
+    bl_order = PanelOrder.DEFORMATION
 
     def draw(self, context: Context) -> None:
         """Lay out."""
         settings = context.object.boucle
-        column = self.column()
+        column = self.column(settings)
         column.prop(settings, "limiter")
         rate = column.column()
         rate.active = settings.limiter != "none"
         rate.prop(settings, "deformation_rate")
 
 
-CLASSES = (BOUCLE_PT_springs, BOUCLE_PT_damping, BOUCLE_PT_deformation)
+CLASSES = (BOUCLE_PT_springs, BOUCLE_PT_stiffness, BOUCLE_PT_damping, BOUCLE_PT_deformation)

@@ -8,6 +8,8 @@ from .changes import FIXED, OVERRIDABLE, changed
 class ShapeProperties:
     """Settings of what the cloth weighs and where it is held."""
 
+    in_presets = ("mass_mode", "density", "mass_per_vertex")
+
     mass_mode: EnumProperty(
         name="Mass",
         description="How the mass is given",

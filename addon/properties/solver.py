@@ -22,6 +22,8 @@ def _read_is_implicit(settings: object) -> bool:
 class SolverProperties:
     """Settings of the solver."""
 
+    in_presets = True
+
     integrator: EnumProperty(
         name="Integrator",
         description="The rule that moves the vertices",

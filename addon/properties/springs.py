@@ -10,6 +10,8 @@ _LARGEST = 1e9
 class SpringProperties:
     """Settings of the springs."""
 
+    in_presets = True
+
     stretch: FloatProperty(
         name="Stretch",
         description="Stiffness of the springs along mesh edges (N/m)",

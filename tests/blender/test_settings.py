@@ -62,6 +62,15 @@ class Layout:
 
     column = row = box = split = _inner
 
+    def separator(self):
+        """A gap."""
+
+    def popover(self, panel, **_):
+        import bpy
+
+        assert hasattr(bpy.types, panel), panel
+        self.drawn.append(panel)
+
     def prop(self, data, name, **_):
         assert name in data.bl_rna.properties, name
         getattr(data, name)
@@ -105,11 +114,13 @@ def draw_everything():
 
             class Panel:
                 layout = Layout(drawn)
-                column = kind.column
+                column = getattr(kind, "column", None)
 
             kind.draw(Panel(), bpy.context)
             if "draw_header" in vars(kind):
                 kind.draw_header(Panel(), bpy.context)
+            if "draw_header_preset" in vars(kind):
+                kind.draw_header_preset(Panel(), bpy.context)
 
     draw_panels()
     bpy.context.scene.frame_set(1)
@@ -126,6 +137,8 @@ def draw_everything():
     obj.boucle.integrator = "verlet"
     obj.boucle.damping_per_kind = True
     bpy.ops.boucle.bake()
+    obj.modifiers.new("Cloth", "CLOTH")
+    bpy.ops.boucle.save_preset(preset="Mine")
     draw_panels()
 
     class Any:
@@ -158,6 +171,8 @@ def test_every_setting_is_drawn_and_the_safe_time_step_is_shown(blender):
         "damping_shear", "air_damping", "wind_velocity", "wind_air_density", "time_step",
         "allow_unstable", "boucle.bake", "boucle.free_bake", "boucle.reset", "boucle.check",
         "boucle.bake_all", "boucle.enable", "boucle.disable", "boucle.add_cloth", "live_memory",
+        "boucle.apply_preset", "boucle.save_preset", "boucle.delete_preset", "preset_name",
+        "BOUCLE_PT_presets", "boucle.copy_from_cloth",
     }  # fmt: skip
     text = " ".join(drawn)
     assert re.search(r"Safe time step: [\d.]+ ms, \d+ substeps a frame at 24 fps", text)

@@ -11,9 +11,10 @@ from .core.transaction import Step, apply_all, revert_all
 from .operators import add, bake
 from .operators import cache as cache_operators
 from .operators import cloth as cloth_operators
+from .operators import problems as problem_operators
 from .panels import cache as cache_panels
 from .panels import cloth as cloth_panels
-from .panels import collisions, forces, shape, solver, springs
+from .panels import collisions, forces, problems, shape, solver, springs
 from .properties import cloth as cloth_properties
 
 _CLASSES = (
@@ -21,9 +22,11 @@ _CLASSES = (
     *preferences.CLASSES,
     *add.CLASSES,
     *cloth_operators.CLASSES,
+    *problem_operators.CLASSES,
     *bake.CLASSES,
     *cache_operators.CLASSES,
     *cloth_panels.CLASSES,
+    *problems.CLASSES,
     *springs.CLASSES,
     *shape.CLASSES,
     *collisions.CLASSES,

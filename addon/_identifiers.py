@@ -14,12 +14,20 @@ class Operators:
     ADOPT_BAKE = "boucle.adopt_bake"
     RESET = "boucle.reset"
     CHECK = "boucle.check"
+    SELECT_PROBLEM = "boucle.select_problem"
+    MAKE_COLLIDER = "boucle.make_collider"
+    GO_TO_WORST_FRAME = "boucle.go_to_worst_frame"
+    SELECT_WORST_EDGES = "boucle.select_worst_edges"
+    APPLY_AS_REST = "boucle.apply_as_rest"
+    APPLY_AS_START = "boucle.apply_as_start"
+    APPLY_AS_SHAPE_KEY = "boucle.apply_as_shape_key"
 
 
 class Panels:
     """Panel names."""
 
     CLOTH = "BOUCLE_PT_cloth"
+    PROBLEMS = "BOUCLE_PT_problems"
     SPRINGS = "BOUCLE_PT_springs"
     DAMPING = "BOUCLE_PT_damping"
     DEFORMATION = "BOUCLE_PT_deformation"
@@ -31,6 +39,7 @@ class Panels:
     SOLVER = "BOUCLE_PT_solver"
     SOLVER_ADVANCED = "BOUCLE_PT_solver_advanced"
     CACHE = "BOUCLE_PT_cache"
+    RESULT = "BOUCLE_PT_result"
 
 
 EXTENSION = "boucle"

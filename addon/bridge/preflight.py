@@ -11,7 +11,7 @@ from .. import native
 from ..core import mesh_check, points, scene_json
 from ..core.mesh_check import Problem, Severity
 from ..core.refusal import Refusal
-from . import animation, cache, mesh_arrays, rest, sampling, settings, slot
+from . import animation, cache, crossing, mesh_arrays, rest, sampling, settings, setup_check, slot
 
 SAMPLED_ONCE = (
     "stretch", "shear", "bend", "damping", "damping_stretch", "damping_shear", "damping_bend",
@@ -24,7 +24,10 @@ SAMPLED_ONCE = (
 def problems(obj: bpy.types.Object, scene: bpy.types.Scene) -> list[Problem]:
     """Everything that is wrong with a cloth, errors first."""
     found = [*_errors(obj, scene), *_warnings(obj, scene)]
-    return sorted(found, key=lambda problem: problem.severity is Severity.WARNING)
+    if not any(problem.severity is Severity.ERROR for problem in found):
+        found += [*crossing.at_start(obj, scene), *crossing.strangers(obj, scene)]
+    order = list(Severity)
+    return sorted(found, key=lambda problem: order.index(problem.severity))
 
 
 def refuse_errors(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
@@ -110,9 +113,7 @@ def _stack_errors(obj: bpy.types.Object) -> Iterator[Problem]:
 
 def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
     group = obj.boucle.pin_group
-    if not group:
-        yield _warning(f'"{obj.name}": no Pin Group is set, so the cloth falls freely')
-    elif obj.vertex_groups.get(group) is not None:
+    if obj.vertex_groups.get(group) is not None:
         whole = set(mesh_arrays.group_vertices(obj, group, 1.0))
         soft = [v for v in mesh_arrays.group_vertices(obj, group, 1e-6) if v not in whole]
         if soft:
@@ -130,6 +131,7 @@ def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem
             "counts yet"
         )
     yield from _unsupported(obj, scene)
+    yield from setup_check.problems(obj, scene)
     if cache.problem(obj):
         yield _warning(cache.problem(obj))
     changed = cache.drift_of(obj, scene, in_full=True)

@@ -8,13 +8,13 @@ import bpy
 from . import handlers, native, preferences
 from .bridge import live, runtime, thickness_view
 from .core.transaction import Step, apply_all, revert_all
-from .operators import add, bake
+from .operators import add, bake, worst
 from .operators import cache as cache_operators
 from .operators import cloth as cloth_operators
 from .operators import problems as problem_operators
 from .panels import cache as cache_panels
 from .panels import cloth as cloth_panels
-from .panels import collisions, forces, problems, shape, solver, springs
+from .panels import collisions, forces, problems, result, shape, solver, springs
 from .properties import cloth as cloth_properties
 
 _CLASSES = (
@@ -25,6 +25,7 @@ _CLASSES = (
     *problem_operators.CLASSES,
     *bake.CLASSES,
     *cache_operators.CLASSES,
+    *worst.CLASSES,
     *cloth_panels.CLASSES,
     *problems.CLASSES,
     *springs.CLASSES,
@@ -33,6 +34,7 @@ _CLASSES = (
     *forces.CLASSES,
     *solver.CLASSES,
     *cache_panels.CLASSES,
+    *result.CLASSES,
 )
 
 

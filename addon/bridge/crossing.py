@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from typing import Any
 
 import bpy
@@ -14,8 +13,8 @@ from ..core import crossing_scene, points
 from ..core.mesh_check import Problem, Severity
 from ..core.points import Points
 from ..core.refusal import Refusal
-from . import mesh_arrays, registry, runtime, sampling, settings, shown, simulation
-from .colliders import Arrays, Colliders
+from . import mesh_arrays, registry, settings, shown, simulation, start_pose
+from .colliders import Arrays
 
 MOST_OBJECTS = 32
 """Objects whose boxes meet the cloth's that are looked at closely, the nearest in name first."""
@@ -26,25 +25,20 @@ Box = tuple[Sequence[float], Sequence[float]]
 
 def at_start(obj: bpy.types.Object, scene: bpy.types.Scene) -> list[Problem]:
     """What the cloth passes through at its start frame: itself and its colliders."""
-    with _standing_at(scene, obj.boucle.frame_start):
-        depsgraph = _depsgraph(obj, scene)
-        try:
-            description = settings.describe(obj, scene, with_groups=True)
-            matrix = sampling.object_matrix(obj, depsgraph)
-            world = points.transform(sampling.targets(obj, depsgraph), matrix, "d")
-            met = Colliders(obj, scene, depsgraph).arrays
-        except Refusal:
-            return []  # said as an error of its own
+    try:
+        start = start_pose.sample(obj, scene)
+    except Refusal:
+        return []  # said as an error of its own
     found = []
     scenes = (
-        (crossing_scene.against_itself(description), [], "itself", "part its layers"),
+        (crossing_scene.against_itself(start.description), [], "itself", "part its layers"),
         (
-            crossing_scene.against_colliders(description), met,
+            crossing_scene.against_colliders(start.description), start.colliders,
             "what it collides with", "move it or the objects apart",
         ),
     )  # fmt: skip
     for asked, arrays, whom, cure in scenes:
-        vertices = _crossing(obj, asked, world, arrays) if asked else []
+        vertices = _crossing(obj, asked, start.world, arrays) if asked else []
         if vertices:
             sentence = (
                 f'"{obj.name}" passes through {whom} at the start frame, at {len(vertices)} vertices: '
@@ -58,7 +52,7 @@ def strangers(obj: bpy.types.Object, scene: bpy.types.Scene) -> list[Problem]:
     """Objects that the cloth passes through in the frame that is shown, because they are no colliders."""
     matrix = mesh_arrays.world_matrix(obj)
     world = points.transform(shown.positions(obj, scene), matrix, "d")
-    depsgraph = _depsgraph(obj, scene)
+    depsgraph = registry.depsgraph_of(obj, scene)
     try:
         description = settings.describe(obj, scene, with_groups=False)
     except Refusal:
@@ -129,24 +123,3 @@ def _meet(one: Box, other: Box) -> bool:
     return all(
         one[0][axis] <= other[1][axis] and other[0][axis] <= one[1][axis] for axis in range(3)
     )
-
-
-def _depsgraph(obj: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.Depsgraph:
-    layer = registry.layer_of(obj, scene)
-    return layer.depsgraph if layer.depsgraph else bpy.context.evaluated_depsgraph_get()
-
-
-@contextmanager
-def _standing_at(scene: bpy.types.Scene, frame: int) -> Iterator[None]:
-    """The scene at a frame, with live mode still; back where it was after."""
-    was = scene.frame_current, scene.frame_subframe
-    if was == (frame, 0.0):
-        yield
-        return
-    runtime.busy.add("check")
-    try:
-        scene.frame_set(frame)
-        yield
-    finally:
-        scene.frame_set(was[0], subframe=was[1])
-        runtime.busy.discard("check")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import bmesh
 import bpy
 
 from .. import native
@@ -35,29 +34,6 @@ def refuse_errors(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
     for problem in _errors(obj, scene):
         if problem.severity is Severity.ERROR:
             raise Refusal(problem.sentence)
-
-
-def select(obj: bpy.types.Object, vertices: set[int]) -> None:
-    """Select these vertices of a mesh and no others."""
-    mesh = obj.data
-    if mesh.is_editmode:
-        edited = bmesh.from_edit_mesh(mesh)
-        for vertex in edited.verts:
-            vertex.select_set(vertex.index in vertices)
-        edited.select_flush_mode()
-        bmesh.update_edit_mesh(mesh)
-        return
-    # In Blender 5.0 the flags of a fresh mesh may be stored as one value for all, and its own `select` then writes beyond
-    # it: they are made anew.
-    for name, domain, flags in (
-        (".select_vert", "POINT", [v.index in vertices for v in mesh.vertices]),
-        (".select_edge", "EDGE", [vertices.issuperset(edge.vertices) for edge in mesh.edges]),
-        (".select_poly", "FACE", [vertices.issuperset(face.vertices) for face in mesh.polygons]),
-    ):
-        if mesh.attributes.get(name) is not None:
-            mesh.attributes.remove(mesh.attributes[name])
-        mesh.attributes.new(name, "BOOLEAN", domain).data.foreach_set("value", flags)
-    mesh.update()
 
 
 def _errors(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:

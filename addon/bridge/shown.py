@@ -22,9 +22,8 @@ def positions(obj: bpy.types.Object, scene: bpy.types.Scene) -> Points:
     found = at_frame(obj, scene.frame_current)
     if found is not None:
         return found
-    layer = registry.layer_of(obj, scene)
     try:
-        return sampling.targets(obj, layer.depsgraph or bpy.context.evaluated_depsgraph_get())
+        return sampling.targets(obj, registry.depsgraph_of(obj, scene))
     except Refusal:
         return rest.positions(obj.data)
 

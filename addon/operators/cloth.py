@@ -6,7 +6,7 @@ from bpy.props import BoolProperty
 from bpy.types import Context, Operator
 
 from .._identifiers import Operators
-from ..bridge import cloth, findings, live, preflight
+from ..bridge import cloth, findings, live, preflight, selection
 from ..core.mesh_check import Severity
 from .polling import cloths_of, has_cloth, has_mesh
 
@@ -98,7 +98,7 @@ class BOUCLE_OT_check(Operator):
             for vertex in problem.vertices
         }
         if self.select and culprits:
-            preflight.select(obj, culprits)
+            selection.select(obj, culprits)
         findings.keep(obj, problems)
         for problem in problems:
             is_error = problem.severity is Severity.ERROR

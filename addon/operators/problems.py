@@ -7,7 +7,7 @@ from bpy.props import BoolProperty, FloatProperty, IntProperty, StringProperty
 from bpy.types import Context, Event, Operator
 
 from .._identifiers import Operators
-from ..bridge import collider_setup, findings, preflight
+from ..bridge import collider_setup, findings, selection
 from ..core.refusal import Refusal, sentence_of
 from .polling import has_cloth
 
@@ -43,7 +43,7 @@ class BOUCLE_OT_select_problem(Operator):
         if self.edit and obj.mode == "OBJECT":
             bpy.ops.object.mode_set(mode="EDIT")
         context.tool_settings.mesh_select_mode = (True, False, False)
-        preflight.select(obj, set(problem.vertices))
+        selection.select(obj, set(problem.vertices))
         return {"FINISHED"}
 
 

@@ -8,7 +8,7 @@ import bpy
 from . import handlers, native, preferences
 from .bridge import live, runtime, thickness_view
 from .core.transaction import Step, apply_all, revert_all
-from .operators import add, bake, worst
+from .operators import add, apply, bake, worst
 from .operators import cache as cache_operators
 from .operators import cloth as cloth_operators
 from .operators import problems as problem_operators
@@ -26,6 +26,7 @@ _CLASSES = (
     *bake.CLASSES,
     *cache_operators.CLASSES,
     *worst.CLASSES,
+    *apply.CLASSES,
     *cloth_panels.CLASSES,
     *problems.CLASSES,
     *springs.CLASSES,

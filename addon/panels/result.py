@@ -27,6 +27,14 @@ class BOUCLE_PT_result(PhysicsPanel, Panel):
         row = layout.row(align=True)
         row.operator(Operators.SELECT_WORST_EDGES, text="Over the Rate").which = "rate"
         row.operator(Operators.SELECT_WORST_EDGES, text="Most Stretched").which = "most"
+        layout.label(text="Apply as")
+        row = layout.row(align=True)
+        for name in (
+            Operators.APPLY_AS_REST,
+            Operators.APPLY_AS_START,
+            Operators.APPLY_AS_SHAPE_KEY,
+        ):
+            row.operator(name)
 
 
 CLASSES = (BOUCLE_PT_result,)

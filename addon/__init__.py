@@ -8,7 +8,7 @@ import bpy
 from . import handlers, native, preferences
 from .bridge import live, runtime, thickness_view
 from .core.transaction import Step, apply_all, revert_all
-from .operators import add, apply, bake, worst
+from .operators import add, apply, bake, starters, worst
 from .operators import cache as cache_operators
 from .operators import cloth as cloth_operators
 from .operators import problems as problem_operators
@@ -21,6 +21,7 @@ _CLASSES = (
     *cloth_properties.CLASSES,
     *preferences.CLASSES,
     *add.CLASSES,
+    *starters.CLASSES,
     *cloth_operators.CLASSES,
     *problem_operators.CLASSES,
     *bake.CLASSES,
@@ -50,8 +51,8 @@ _STEPS = (
     *(_class_step(cls) for cls in _CLASSES),
     Step(cloth_properties.attach, cloth_properties.detach),
     Step(
-        lambda: bpy.types.VIEW3D_MT_mesh_add.append(add.draw_menu),
-        lambda: bpy.types.VIEW3D_MT_mesh_add.remove(add.draw_menu),
+        lambda: bpy.types.VIEW3D_MT_mesh_add.append(starters.draw_menu),
+        lambda: bpy.types.VIEW3D_MT_mesh_add.remove(starters.draw_menu),
     ),
     Step(
         lambda: bpy.types.PHYSICS_PT_add.append(cloth_panels.draw_button),

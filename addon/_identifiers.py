@@ -5,6 +5,10 @@ class Operators:
     """Operator names, as `bpy.ops` has them."""
 
     ADD_CLOTH = "boucle.add_cloth"
+    ADD_FLAG = "boucle.add_flag"
+    ADD_CURTAIN = "boucle.add_curtain"
+    ADD_CAPE = "boucle.add_cape"
+    ADD_TABLECLOTH = "boucle.add_tablecloth"
     ENABLE = "boucle.enable"
     DISABLE = "boucle.disable"
     BAKE = "boucle.bake"
@@ -21,6 +25,12 @@ class Operators:
     APPLY_AS_REST = "boucle.apply_as_rest"
     APPLY_AS_START = "boucle.apply_as_start"
     APPLY_AS_SHAPE_KEY = "boucle.apply_as_shape_key"
+
+
+class Menus:
+    """Menu names."""
+
+    ADD = "BOUCLE_MT_add"
 
 
 class Panels:

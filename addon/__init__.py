@@ -8,34 +8,13 @@ import bpy
 from . import handlers, native, preferences
 from .bridge import live, runtime, thickness_view
 from .core.transaction import Step, apply_all, revert_all
-from .operators import add, bake, copy_from_cloth
-from .operators import cache as cache_operators
-from .operators import cloth as cloth_operators
-from .operators import presets as preset_operators
-from .panels import cache as cache_panels
+from .operators import CLASSES as OPERATORS
+from .operators import starters
+from .panels import CLASSES as PANELS
 from .panels import cloth as cloth_panels
-from .panels import collisions, forces, shape, solver, springs
-from .panels import presets as preset_panels
 from .properties import cloth as cloth_properties
 
-_CLASSES = (
-    *cloth_properties.CLASSES,
-    *preferences.CLASSES,
-    *add.CLASSES,
-    *cloth_operators.CLASSES,
-    *preset_operators.CLASSES,
-    *copy_from_cloth.CLASSES,
-    *bake.CLASSES,
-    *cache_operators.CLASSES,
-    *preset_panels.CLASSES,
-    *cloth_panels.CLASSES,
-    *springs.CLASSES,
-    *shape.CLASSES,
-    *collisions.CLASSES,
-    *forces.CLASSES,
-    *solver.CLASSES,
-    *cache_panels.CLASSES,
-)
+_CLASSES = (*cloth_properties.CLASSES, *preferences.CLASSES, *OPERATORS, *PANELS)
 
 
 def _class_step(cls: type) -> Step:
@@ -49,8 +28,8 @@ _STEPS = (
     *(_class_step(cls) for cls in _CLASSES),
     Step(cloth_properties.attach, cloth_properties.detach),
     Step(
-        lambda: bpy.types.VIEW3D_MT_mesh_add.append(add.draw_menu),
-        lambda: bpy.types.VIEW3D_MT_mesh_add.remove(add.draw_menu),
+        lambda: bpy.types.VIEW3D_MT_mesh_add.append(starters.draw_menu),
+        lambda: bpy.types.VIEW3D_MT_mesh_add.remove(starters.draw_menu),
     ),
     Step(
         lambda: bpy.types.PHYSICS_PT_add.append(cloth_panels.draw_button),

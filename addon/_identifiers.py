@@ -5,6 +5,10 @@ class Operators:
     """Operator names, as `bpy.ops` has them."""
 
     ADD_CLOTH = "boucle.add_cloth"
+    ADD_FLAG = "boucle.add_flag"
+    ADD_CURTAIN = "boucle.add_curtain"
+    ADD_CAPE = "boucle.add_cape"
+    ADD_TABLECLOTH = "boucle.add_tablecloth"
     ENABLE = "boucle.enable"
     DISABLE = "boucle.disable"
     BAKE = "boucle.bake"
@@ -18,6 +22,19 @@ class Operators:
     SAVE_PRESET = "boucle.save_preset"
     DELETE_PRESET = "boucle.delete_preset"
     COPY_FROM_CLOTH = "boucle.copy_from_cloth"
+    SELECT_PROBLEM = "boucle.select_problem"
+    MAKE_COLLIDER = "boucle.make_collider"
+    GO_TO_WORST_FRAME = "boucle.go_to_worst_frame"
+    SELECT_WORST_EDGES = "boucle.select_worst_edges"
+    APPLY_AS_REST = "boucle.apply_as_rest"
+    APPLY_AS_START = "boucle.apply_as_start"
+    APPLY_AS_SHAPE_KEY = "boucle.apply_as_shape_key"
+
+
+class Menus:
+    """Menu names."""
+
+    ADD = "BOUCLE_MT_add"
 
 
 class Panels:
@@ -25,6 +42,7 @@ class Panels:
 
     CLOTH = "BOUCLE_PT_cloth"
     PRESETS = "BOUCLE_PT_presets"
+    PROBLEMS = "BOUCLE_PT_problems"
     SPRINGS = "BOUCLE_PT_springs"
     STIFFNESS = "BOUCLE_PT_stiffness"
     DAMPING = "BOUCLE_PT_damping"
@@ -37,6 +55,7 @@ class Panels:
     SOLVER = "BOUCLE_PT_solver"
     SOLVER_ADVANCED = "BOUCLE_PT_solver_advanced"
     CACHE = "BOUCLE_PT_cache"
+    RESULT = "BOUCLE_PT_result"
 
 
 class PanelOrder:

@@ -8,7 +8,16 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from .bridge import certificate, live, registry, runtime, safe_step, saving, thickness_view
+from .bridge import (
+    certificate,
+    findings,
+    live,
+    registry,
+    runtime,
+    safe_step,
+    saving,
+    thickness_view,
+)
 
 
 @persistent
@@ -55,6 +64,7 @@ def load_pre(*_: Any) -> None:
     live.forget_all()
     safe_step.forget()
     certificate.forget()
+    findings.forget()
     runtime.rendering.clear()
 
 

@@ -13,7 +13,7 @@ import bpy
 
 from .. import native
 from ..core import bake as core_bake
-from ..core import drift, points, progress, report
+from ..core import drift, points, progress, report, scene_json
 from ..core.bake import Plan, Pose, Step, Store
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, sentence_of
@@ -146,6 +146,7 @@ class Bake:
             vertex_count=record["vertices"],
             digest=drift.whole_digest({**record, "end": None}),
             keeps=vertex_attributes.wanted(obj),
+            settling=scene_json.settling(description),
         )
         mesh = obj.data
         cloth = {

@@ -36,6 +36,18 @@ def row_of(obj: bpy.types.Object, scene: bpy.types.Scene) -> Mapping[str, Any]:
     return session.frames.certificate(scene.frame_current) if session is not None else {}
 
 
+def rows(obj: bpy.types.Object) -> Mapping[int, Mapping[str, Any]]:
+    """The certificates of all frames of the result by their frame; empty without one."""
+    path = cache.played_path(obj)
+    if path:
+        return {} if cache.problem(obj) else _rows_of(obj, path)
+    session = live.session_of(obj)
+    if session is None:
+        return {}
+    frames = session.frames
+    return {frame: frames.certificate(frame) for frame in range(frames.first, frames.last + 1)}
+
+
 def _rows_of(obj: bpy.types.Object, pc2_path: str) -> dict[int, Mapping[str, Any]]:
     path = cache_paths.files_of(pc2_path).report
     try:

@@ -18,7 +18,7 @@ from typing import Any
 import bpy
 
 from .. import native
-from ..core import drift, points, quantity
+from ..core import drift, points, quantity, scene_json, settle
 from ..core.live_frames import Action, Frame, LiveFrames
 from ..core.points import Points
 from ..core.progress import size
@@ -152,11 +152,13 @@ def _build(
     is_direct = display.may_write(obj) and (not runtime.rendering or rest.is_displaced(obj.data))
     local = rest.positions(obj.data) if is_direct else sampling.targets(obj, depsgraph)
     matrix = sampling.object_matrix(obj, depsgraph)
-    sampling.inverse(obj, matrix)
+    to_object = sampling.inverse(obj, matrix)
     met = Colliders(obj, scene, depsgraph)
     world = points.transform(local, matrix, "d")
     solver = simulation.maker(obj, description, world, colliders=met.arrays)()
     limit = memory_limit()
+    if settle.run(solver, scene_json.settling(description), len(obj.data.vertices)):
+        local = _read(solver, to_object, len(obj.data.vertices))
     first = Frame(local, solver.certificate(), _read_numbers(solver, obj))
     shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
     return Session(
@@ -224,20 +226,20 @@ def _step(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgrap
     try:
         pose.aim(session.solver)
         certificate = session.solver.advance()
-        positions = _read(session, pose.to_object, len(obj.data.vertices))
+        positions = _read(session.solver, pose.to_object, len(obj.data.vertices))
         session.frames.add(Frame(positions, certificate, _read_numbers(session.solver, obj)))
     except native.FAILURES as error:
         session.solver = None
         _say(obj, f"{sentence_of(error)}; frames up to {session.frames.last} are kept")
 
 
-def _read(session: Session, to_object: points.Affine, vertex_count: int) -> Points:
+def _read(solver: Any, to_object: points.Affine, vertex_count: int) -> Points:
     if to_object == points.IDENTITY:
         out = points.empty("f", 3 * vertex_count)
-        session.solver.read_positions(0, out)
+        solver.read_positions(0, out)
         return out
     world = points.empty("d", 3 * vertex_count)
-    session.solver.read_positions(0, world)
+    solver.read_positions(0, world)
     return points.transform(world, to_object, "f")
 
 
@@ -294,6 +296,17 @@ def forget_all() -> None:
         session.display.forget()
     _sessions.clear()
     runtime.messages.clear()
+
+
+def show_anew(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
+    """Keep the frames of a mesh that must be shown in another way from now on; its display has ended."""
+    session = session_of(obj)
+    if session is None:
+        return
+    is_direct = display.may_write(obj)
+    session.display = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
+    session.basis = _basis(obj, scene)
+    session.display.show(obj, session.frames, scene.frame_current)
 
 
 def revalidate(scene: bpy.types.Scene) -> None:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import bmesh
 import bpy
 
 from .. import native
 from ..core import mesh_check, points, scene_json
 from ..core.mesh_check import Problem, Severity
 from ..core.refusal import Refusal
-from . import animation, cache, mesh_arrays, rest, sampling, settings, slot
+from . import animation, cache, crossing, mesh_arrays, rest, sampling, settings, setup_check, slot
 
 SAMPLED_ONCE = (
     "stretch", "shear", "bend", "damping", "damping_stretch", "damping_shear", "damping_bend",
@@ -24,7 +23,10 @@ SAMPLED_ONCE = (
 def problems(obj: bpy.types.Object, scene: bpy.types.Scene) -> list[Problem]:
     """Everything that is wrong with a cloth, errors first."""
     found = [*_errors(obj, scene), *_warnings(obj, scene)]
-    return sorted(found, key=lambda problem: problem.severity is Severity.WARNING)
+    if not any(problem.severity is Severity.ERROR for problem in found):
+        found += [*crossing.at_start(obj, scene), *crossing.strangers(obj, scene)]
+    order = list(Severity)
+    return sorted(found, key=lambda problem: order.index(problem.severity))
 
 
 def refuse_errors(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
@@ -32,29 +34,6 @@ def refuse_errors(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
     for problem in _errors(obj, scene):
         if problem.severity is Severity.ERROR:
             raise Refusal(problem.sentence)
-
-
-def select(obj: bpy.types.Object, vertices: set[int]) -> None:
-    """Select these vertices of a mesh and no others."""
-    mesh = obj.data
-    if mesh.is_editmode:
-        edited = bmesh.from_edit_mesh(mesh)
-        for vertex in edited.verts:
-            vertex.select_set(vertex.index in vertices)
-        edited.select_flush_mode()
-        bmesh.update_edit_mesh(mesh)
-        return
-    # In Blender 5.0 the flags of a fresh mesh may be stored as one value for all, and its own `select` then writes beyond
-    # it: they are made anew.
-    for name, domain, flags in (
-        (".select_vert", "POINT", [v.index in vertices for v in mesh.vertices]),
-        (".select_edge", "EDGE", [vertices.issuperset(edge.vertices) for edge in mesh.edges]),
-        (".select_poly", "FACE", [vertices.issuperset(face.vertices) for face in mesh.polygons]),
-    ):
-        if mesh.attributes.get(name) is not None:
-            mesh.attributes.remove(mesh.attributes[name])
-        mesh.attributes.new(name, "BOOLEAN", domain).data.foreach_set("value", flags)
-    mesh.update()
 
 
 def _errors(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
@@ -110,9 +89,7 @@ def _stack_errors(obj: bpy.types.Object) -> Iterator[Problem]:
 
 def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
     group = obj.boucle.pin_group
-    if not group:
-        yield _warning(f'"{obj.name}": no Pin Group is set, so the cloth falls freely')
-    elif obj.vertex_groups.get(group) is not None:
+    if obj.vertex_groups.get(group) is not None:
         whole = set(mesh_arrays.group_vertices(obj, group, 1.0))
         soft = [v for v in mesh_arrays.group_vertices(obj, group, 1e-6) if v not in whole]
         if soft:
@@ -130,6 +107,7 @@ def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem
             "counts yet"
         )
     yield from _unsupported(obj, scene)
+    yield from setup_check.problems(obj, scene)
     if cache.problem(obj):
         yield _warning(cache.problem(obj))
     changed = cache.drift_of(obj, scene, in_full=True)

@@ -66,6 +66,12 @@ def layer_of(obj: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.ViewLay
     return next((layer for layer in layers if layer.objects.get(obj.name)), layers[0])
 
 
+def depsgraph_of(obj: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.Depsgraph:
+    """The depsgraph of that view layer."""
+    layer = layer_of(obj, scene)
+    return layer.depsgraph if layer.depsgraph else bpy.context.evaluated_depsgraph_get()
+
+
 def _is_in(obj: bpy.types.Object, scene: bpy.types.Scene) -> bool:
     found = scene.objects.get(obj.name)
     if found is None or found == obj:

@@ -21,6 +21,7 @@ from .pc2 import Writer
 from .points import Affine, Points
 from .quantity import Numbers
 from .refusal import Refusal, cannot_write
+from .settle import Settle, Settling
 
 CHECKPOINT_SECONDS = 5.0
 """A kill loses at most about this much work; writing a checkpoint takes milliseconds."""
@@ -35,6 +36,7 @@ class Simulation(Protocol):
     def set_collider_targets(self, collider: int, targets: Points) -> None: ...
     def advance(self) -> dict[str, Any]: ...
     def certificate(self) -> dict[str, Any]: ...
+    def set_positions(self, cloth: int, positions: Points) -> None: ...
     def read_positions(self, cloth: int, out: Points) -> None: ...
     def read_strain(self, cloth: int, out: Points) -> None: ...
     def read_contacts(self, cloth: int, out: Points) -> None: ...
@@ -69,6 +71,7 @@ class Plan(NamedTuple):
     digest: str
     keeps: tuple[str, ...] = ()
     """Keys of the quantities that are kept beside the positions."""
+    settling: Settling = Settling()
 
 
 class Step:
@@ -236,7 +239,7 @@ def bake(
     """Simulate the plan's frames in order, write each one, and yield a step for every frame.
 
     Args:
-        simulation: At rest at the plan's start; left at the last frame reached.
+        simulation: At rest at the plan's start, or before it by the frames of settling; left at the last frame reached.
         store: Receives every frame; closed at the end, whatever happens.
         pose_at: Brings the scene to a frame and reads it; called between steps.
         resume: Go on from the store's checkpoint if there is one.
@@ -260,6 +263,7 @@ def bake(
 
     try:
         if not (resume and store.resume(simulation)):
+            yield from _settle(simulation, plan)
             store.begin()
             begin = Step(plan.start, lambda: _rest(simulation, world, numbers))
             begin.run()
@@ -282,6 +286,15 @@ def bake(
             store.finish(simulation if usable else None)
         finally:
             store.close()
+
+
+def _settle(simulation: Simulation, plan: Plan) -> Iterator[Step]:
+    """A step for every frame of settling; nothing on disk is touched before they are done."""
+    settle = Settle(simulation, plan.settling, plan.vertex_count)
+    while not settle.is_done:
+        step = Step(simulation.frame + 1, settle.advance)
+        yield step
+        step.result()
 
 
 def _rest(simulation: Simulation, world: Points, numbers: Numbers) -> dict[str, Any]:

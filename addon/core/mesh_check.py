@@ -13,6 +13,7 @@ class Severity(Enum):
 
     ERROR = "the cloth cannot be simulated"
     WARNING = "the cloth can be simulated, but look at this"
+    HINT = "nothing is wrong, but it may not be what is meant"
 
 
 class Problem(NamedTuple):
@@ -21,6 +22,8 @@ class Problem(NamedTuple):
     severity: Severity
     sentence: str
     vertices: Sequence[int] = ()
+    passes_through: str = ""
+    """Name of an object that the cloth passes through, because it is no collider."""
 
 
 SMALLEST_AREA = 1e-18
@@ -60,6 +63,40 @@ def check(
     return found
 
 
+def thick_for_edges(
+    positions: Sequence[float], ends: Sequence[int], thickness: float
+) -> list[Problem]:
+    """The problem of a cloth that is thicker than half of an edge: what is near at rest is always in contact.
+
+    Args:
+        positions: x, y, z of each vertex (m, world space), flat.
+        ends: The two vertices of each edge, flat.
+        thickness: Radius of the cloth (m).
+    """
+    values = [float(value) for value in positions]
+    lengths = sorted(edge_lengths(values, ends))
+    found = {
+        int(vertex)
+        for k, length in zip(range(0, len(ends), 2), edge_lengths(values, ends), strict=True)
+        if length < 2.0 * thickness
+        for vertex in ends[k : k + 2]
+    }
+    if not found:
+        return []
+    sentence = (
+        f"Thickness is {thickness:.3g} m, more than half of the edges at {_vertices(len(found))} (the "
+        f"shortest is {lengths[0]:.3g} m): the cloth then touches itself at rest and takes longer: lower "
+        f"Thickness to {0.25 * lengths[len(lengths) // 2]:.2g} m, or merge short edges"
+    )
+    return [Problem(Severity.WARNING, sentence, sorted(found))]
+
+
+def edge_lengths(values: Sequence[float], ends: Sequence[int]) -> list[float]:
+    """The length of each edge (m)."""
+    places = [values[k : k + 3] for k in range(0, len(values), 3)]
+    return [math.dist(places[ends[k]], places[ends[k + 1]]) for k in range(0, len(ends), 2)]
+
+
 def _error(sentence: str, vertices: Sequence[int]) -> Problem:
     return Problem(Severity.ERROR, sentence, vertices)
 
@@ -73,8 +110,11 @@ def _counted(vertices: Sequence[int], what: str, cure: str) -> Problem | None:
 def _sentence(vertices: Sequence[int], what: str, cure: str) -> str:
     numbers = ", ".join(str(vertex) for vertex in vertices[:5])
     more = ", ..." if len(vertices) > 5 else ""
-    noun = "vertices" if len(vertices) != 1 else "vertex"
-    return f"{len(vertices)} {noun} {what} ({numbers}{more}): {cure}"
+    return f"{_vertices(len(vertices))} {what} ({numbers}{more}): {cure}"
+
+
+def _vertices(count: int) -> str:
+    return f"{count} vertices" if count != 1 else "1 vertex"
 
 
 def _loose(count: int, corners: Sequence[int]) -> list[int]:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from .refusal import Refusal
+from .settle import Settling
 
 IMPLICIT = frozenset({"bdf2", "implicit_euler"})
 """Integrators that are stable at any step."""
@@ -72,6 +73,9 @@ def describe(
         "cloth": [_cloth(name, values, groups, bool(colliders))],
         "solver": _solver(name, values),
     }
+    if values.get("settle_frames"):
+        scene["scene"]["settle_frames"] = int(values["settle_frames"])
+        scene["scene"]["settle_damped"] = bool(values["settle_damped"])
     force = _wind(values, groups.wind)
     if force:
         scene["force"] = [force]
@@ -80,9 +84,18 @@ def describe(
     return scene
 
 
+def settling(scene: Mapping[str, Any]) -> Settling:
+    """How the cloth settles before the start frame."""
+    head = scene["scene"]
+    return Settling(head.get("settle_frames", 0), head.get("settle_damped", True))
+
+
 def encode(scene: Mapping[str, Any]) -> str:
-    """The scene as JSON."""
-    return json.dumps(scene, allow_nan=False)
+    """The scene as JSON for the solver, which begins with the frames of settling."""
+    head = {key: value for key, value in scene["scene"].items() if not key.startswith("settle")}
+    start, end = scene["scene"]["frames"]
+    head["frames"] = [start - settling(scene).frames, end]
+    return json.dumps({**scene, "scene": head}, allow_nan=False)
 
 
 def _cloth(name: str, values: Values, groups: Groups, meets: bool) -> dict[str, Any]:

@@ -1,1 +1,29 @@
 """What the user can do: each operator checks, calls the bridge and reports."""
+
+from . import (
+    add,
+    apply,
+    bake,
+    cache,
+    cloth,
+    copy_from_cloth,
+    presets,
+    problems,
+    starters,
+    worst,
+)
+
+_MODULES = (
+    add,
+    apply,
+    bake,
+    cache,
+    cloth,
+    copy_from_cloth,
+    presets,
+    problems,
+    starters,
+    worst,
+)
+
+CLASSES = tuple(cls for module in _MODULES for cls in module.CLASSES)

@@ -146,9 +146,4 @@ def pinned(columns: int, rows: int, names: set[str]) -> list[int]:
     return sorted({vertex for name in names for vertex in places[name]})
 
 
-def draw_menu(menu: bpy.types.Menu, _context: Context) -> None:
-    """The entry in Add > Mesh."""
-    menu.layout.operator(Operators.ADD_CLOTH, icon="MOD_CLOTH")
-
-
 CLASSES = (BOUCLE_OT_add_cloth,)

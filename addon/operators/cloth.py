@@ -6,7 +6,7 @@ from bpy.props import BoolProperty
 from bpy.types import Context, Operator
 
 from .._identifiers import Operators
-from ..bridge import cloth, live, preflight, runtime
+from ..bridge import cloth, findings, live, preflight, selection
 from ..core.mesh_check import Severity
 from .polling import cloths_of, has_cloth, has_mesh
 
@@ -88,20 +88,24 @@ class BOUCLE_OT_check(Operator):
         return has_cloth(cls, context)
 
     def execute(self, context: Context) -> set[str]:
-        """Report every problem; the first stands in the panel."""
+        """Report every problem; all stand in the panel."""
         obj = context.object
         problems = preflight.problems(obj, context.scene)
-        culprits = {vertex for problem in problems for vertex in problem.vertices}
+        culprits = {
+            vertex
+            for problem in problems
+            if problem.severity is not Severity.HINT
+            for vertex in problem.vertices
+        }
         if self.select and culprits:
-            preflight.select(obj, culprits)
+            selection.select(obj, culprits)
+        findings.keep(obj, problems)
         for problem in problems:
             is_error = problem.severity is Severity.ERROR
+            kind = "INFO" if problem.severity is Severity.HINT else "WARNING"
             # An ERROR report would raise in a script that only asked.
-            self.report({"WARNING"}, f"{'Error: ' if is_error else ''}{problem.sentence}")
-        if problems:
-            runtime.messages[obj.session_uid] = problems[0].sentence
-        else:
-            runtime.messages.pop(obj.session_uid, None)
+            self.report({kind}, f"{'Error: ' if is_error else ''}{problem.sentence}")
+        if not problems:
             self.report({"INFO"}, f'"{obj.name}" has no problems')
         return {"FINISHED"}
 

@@ -1,1 +1,33 @@
 """What the user sees in the Physics tab; panels only lay out."""
+
+from . import (
+    cache,
+    cloth,
+    collisions,
+    forces,
+    presets,
+    problems,
+    result,
+    shape,
+    solver,
+    springs,
+)
+
+_PARENTS = (
+    cloth,
+    springs,
+    shape,
+    collisions,
+    forces,
+    solver,
+    cache,
+)
+"""Blender wants them before their subpanels; where each stands is its `bl_order`."""
+
+_OTHERS = (
+    presets,
+    problems,
+    result,
+)
+
+CLASSES = tuple(cls for module in (*_PARENTS, *_OTHERS) for cls in module.CLASSES)

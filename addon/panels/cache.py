@@ -23,6 +23,10 @@ class BOUCLE_PT_cache(PhysicsPanel, Panel):
         column = self.column()
         column.prop(settings, "frame_start")
         column.prop(settings, "frame_end")
+        column.prop(settings, "settle_frames")
+        damped = column.column()
+        damped.active = settings.settle_frames > 0
+        damped.prop(settings, "settle_damped")
         column.prop(settings, "use_live")
         for name in ("use_strain", "use_contact", "use_intersection"):
             column.prop(settings, name)

@@ -65,6 +65,19 @@ class CacheProperties:
         default=250, min=-1_000_000, max=1_000_000,
         options=FIXED, override=OVERRIDABLE,
     )  # fmt: skip
+    settle_frames: IntProperty(
+        name="Settle",
+        description="Frames that are simulated before the first, with pins and colliders held as they are at the start: the "
+        "cloth begins where it then hangs or lies; 0 begins at rest",
+        default=0, min=0, max=10_000, soft_max=200,
+        options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    settle_damped: BoolProperty(
+        name="Settle Damped",
+        description="While it settles, take the cloth's velocity whenever its swing is fastest, and at the end: it comes to "
+        "rest in few frames and begins at rest",
+        default=True, options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
     use_live: BoolProperty(
         name="Live",
         description="Simulate while the animation plays, as long as the cloth is not baked",

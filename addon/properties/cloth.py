@@ -10,6 +10,7 @@ from .changes import FIXED, OVERRIDABLE, switched
 from .collisions import CollisionProperties
 from .forces import ForceProperties
 from .presets import PresetProperties
+from .problems import ProblemProperties
 from .shape import ShapeProperties
 from .solver import SolverProperties
 from .springs import SpringProperties
@@ -23,6 +24,7 @@ class BOUCLE_PG_cloth(
     SolverProperties,
     CacheProperties,
     PresetProperties,
+    ProblemProperties,
     PropertyGroup,
 ):
     """Settings of one cloth"""

@@ -145,7 +145,7 @@ def draw_everything():
         layout = Layout(drawn)
 
     addon("panels.cloth").draw_button(Any(), bpy.context)
-    addon("operators.add").draw_menu(Any(), bpy.context)
+    addon("operators.starters").BOUCLE_MT_add.draw(Any(), bpy.context)
     preferences = bpy.context.preferences.addons["bl_ext.user_default.boucle"].preferences
 
     class Preferences:

@@ -46,3 +46,12 @@ def test_vertices_that_lie_on_each_other_are_a_warning():
 def test_a_mesh_without_faces_is_an_error():
     for empty in (problems([], [], [], []), problems(QUAD, [], [], EDGES)):
         assert [p.severity for p in empty] == [Severity.ERROR]
+
+
+def test_a_cloth_thicker_than_half_an_edge_is_told_and_one_of_a_quarter_is_not():
+    slim = [0, 0, 0, 1, 0, 0, 1, 0.1, 0, 0, 0.1, 0]
+    assert mesh_check.thick_for_edges(slim, EDGES, 0.05) == []
+    (found,) = mesh_check.thick_for_edges(slim, [*EDGES, 0, 2], 0.06)
+    assert found.severity is Severity.WARNING
+    assert list(found.vertices) == [0, 1, 2, 3]
+    assert "Thickness is 0.06 m" in found.sentence and "the shortest is 0.1 m" in found.sentence

@@ -44,6 +44,14 @@ def test_numbers_are_those_that_the_user_typed():
     assert json.loads(scene_json.encode(scene)) == scene
 
 
+def test_settling_begins_before_the_start_and_is_no_key_of_the_solver():
+    scene = described(settle_frames=7, settle_damped=False)
+    assert scene["scene"]["frames"] == [1, 50]
+    assert scene_json.settling(scene) == (7, False)
+    assert simulation(scene).frame == -6
+    assert scene_json.settling(described(settle_frames=0)) == (0, True)
+
+
 def test_mass_damping_and_steps_are_given_one_way_each():
     cloth = described()["cloth"][0]
     assert cloth["density"] == 0.2 and "mass_per_vertex" not in cloth

@@ -1,0 +1,54 @@
+"""Settling: frames before the first, in which the cloth comes to rest while pins and colliders stand as at the start.
+
+Damped, it loses its velocity whenever its kinetic energy has passed a peak: there most of the potential energy of a swing has
+become motion, so that few swings are needed (kinetic damping, after Cundall 1976 and Barnes 1999). At the end it is at rest.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from . import points
+
+
+class Settling(NamedTuple):
+    """How long and in which way."""
+
+    frames: int = 0
+    damped: bool = True
+
+
+class Settle:
+    """A simulation that begins so many frames before the start frame, on its way there."""
+
+    def __init__(self, simulation: Any, settling: Settling, vertex_count: int) -> None:
+        """Nothing moves before `advance`."""
+        self._simulation = simulation
+        self._left = settling.frames
+        self._energy = 0.0
+        self._positions = points.empty("d", 3 * vertex_count) if settling.damped else None
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the start frame is reached."""
+        return self._left == 0
+
+    def advance(self) -> None:
+        """Simulate one frame; pins and colliders stay where they are."""
+        energy = self._simulation.advance()["kinetic_energy"]
+        self._left -= 1
+        if self._positions is None:
+            return
+        if energy < self._energy or self.is_done:
+            self._simulation.read_positions(0, self._positions)
+            self._simulation.set_positions(0, self._positions)
+            energy = 0.0
+        self._energy = energy
+
+
+def run(simulation: Any, settling: Settling, vertex_count: int) -> bool:
+    """Bring a simulation to its start frame at once; whether the cloth has moved."""
+    settle = Settle(simulation, settling, vertex_count)
+    while not settle.is_done:
+        settle.advance()
+    return settling.frames > 0

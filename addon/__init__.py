@@ -5,7 +5,7 @@ Registration is a transaction: all steps or none.
 
 import bpy
 
-from . import handlers, native, preferences
+from . import handlers, native, preferences, translations
 from .bridge import live, runtime, thickness_view
 from .core.transaction import Step, apply_all, revert_all
 from .operators import CLASSES as OPERATORS
@@ -35,6 +35,7 @@ _STEPS = (
         lambda: bpy.types.PHYSICS_PT_add.append(cloth_panels.draw_button),
         lambda: bpy.types.PHYSICS_PT_add.remove(cloth_panels.draw_button),
     ),
+    Step(translations.register, translations.unregister),
     Step(handlers.register, handlers.unregister),
     Step(lambda: None, thickness_view.end),
     Step(lambda: None, live.drop_all),

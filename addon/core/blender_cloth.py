@@ -122,6 +122,7 @@ def _group_differs(group: str) -> Callable[[Reading], bool]:
 ROWS = (
     Row("mass_mode", _always("density"), "Mass"),
     Row("density", density, "Vertex Mass"),
+    Row("mass_per_vertex", _as_it_is("mass"), "Vertex Mass"),  # for whoever switches to it
     Row("stiffness_from", _always("springs"), "Stiffness"),
     Row("stretch", spring("tension_stiffness"), "Tension"),
     Row("shear", spring("shear_stiffness"), "Shear"),
@@ -200,6 +201,6 @@ def sentence(name: str, modifier: str, reading: Reading, lost: list[str]) -> str
         f'"{name}": {reading.vertex_count} vertices of {reading.values["mass"]:.3g} kg on '
         f"{reading.area:.3g} m² are {density(reading):.3g} kg/m²; a tension of "
         f"{reading.values['tension_stiffness']:.3g} on edges of {reading.edge:.3g} m is "
-        f'{spring("tension_stiffness")(reading):.3g} N/m; the modifier "{modifier}" is off now'
+        f'{spring("tension_stiffness")(reading):.6g} N/m; the modifier "{modifier}" is off now'
     )
     return f"{said}. Not carried over: {', '.join(lost)}" if lost else said

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bmesh
 import bpy
+from bpy.app.translations import pgettext_n, pgettext_tip
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 from bpy.types import Context, Operator
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
@@ -28,7 +29,7 @@ _choices: list[tuple[str, str, str]] = []
 def _offered(_operator: Operator, _context: Context | None) -> list[tuple[str, str, str]]:
     names = [*presets.shipped_names(), *presets.own_names()]
     _choices[:] = [
-        (NONE, "None", "The settings of a new cloth"),
+        (NONE, pgettext_n("None"), pgettext_n("The settings of a new cloth")),
         *((name, name, presets.description(name)) for name in names),
     ]
     return _choices
@@ -88,7 +89,7 @@ class BOUCLE_OT_add_cloth(AddObjectHelper, Operator):
     def poll(cls, context: Context) -> bool:
         """Only in Object Mode: a cloth is an object of its own."""
         if context.mode != "OBJECT":
-            cls.poll_message_set("Leave Edit Mode first")
+            cls.poll_message_set(pgettext_tip("Leave Edit Mode first"))
             return False
         return True
 

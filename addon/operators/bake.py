@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 
 import bpy
+from bpy.app.translations import pgettext_tip
 from bpy.props import BoolProperty
 from bpy.types import Context, Event, Operator, Timer
 
@@ -184,7 +185,7 @@ class BOUCLE_OT_bake_all(_Baking, Operator):
     def poll(cls, context: Context) -> bool:
         """Only with a cloth in the scene."""
         if not cloths_of(context):
-            cls.poll_message_set("The scene has no Boucle cloth")
+            cls.poll_message_set(pgettext_tip("The scene has no Boucle cloth"))
             return False
         return is_free(cls)
 

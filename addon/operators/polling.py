@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bpy
+from bpy.app.translations import pgettext_tip
 from bpy.types import Context
 
 from .. import native
@@ -13,7 +14,7 @@ def has_mesh(cls: type, context: Context) -> bool:
     """Whether the active object is a mesh of this file."""
     obj = context.object
     if obj is None or obj.type != "MESH":
-        cls.poll_message_set("Select a mesh object")
+        cls.poll_message_set(pgettext_tip("Select a mesh object"))
         return False
     return is_own(cls, obj)
 
@@ -39,7 +40,7 @@ def is_free(cls: type) -> bool:
         cls.poll_message_set(native.problem())
         return False
     if runtime.busy:
-        cls.poll_message_set("A bake is running: wait for it or press Esc")
+        cls.poll_message_set(pgettext_tip("A bake is running: wait for it or press Esc"))
         return False
     return True
 

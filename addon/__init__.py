@@ -12,9 +12,10 @@ from .operators import add, apply, bake, starters, worst
 from .operators import cache as cache_operators
 from .operators import cloth as cloth_operators
 from .operators import problems as problem_operators
+from .operators import takes as take_operators
 from .panels import cache as cache_panels
 from .panels import cloth as cloth_panels
-from .panels import collisions, forces, problems, result, shape, solver, springs
+from .panels import collisions, forces, problems, result, shape, solver, springs, takes
 from .properties import cloth as cloth_properties
 
 _CLASSES = (
@@ -27,6 +28,7 @@ _CLASSES = (
     *bake.CLASSES,
     *cache_operators.CLASSES,
     *worst.CLASSES,
+    *take_operators.CLASSES,
     *apply.CLASSES,
     *cloth_panels.CLASSES,
     *problems.CLASSES,
@@ -37,6 +39,7 @@ _CLASSES = (
     *solver.CLASSES,
     *cache_panels.CLASSES,
     *result.CLASSES,
+    *takes.CLASSES,
 )
 
 

@@ -13,6 +13,7 @@ from .problems import ProblemProperties
 from .shape import ShapeProperties
 from .solver import SolverProperties
 from .springs import SpringProperties
+from .takes import BOUCLE_PG_take, TakeProperties
 
 
 class BOUCLE_PG_cloth(
@@ -23,6 +24,7 @@ class BOUCLE_PG_cloth(
     SolverProperties,
     CacheProperties,
     ProblemProperties,
+    TakeProperties,
     PropertyGroup,
 ):
     """Settings of one cloth"""
@@ -34,7 +36,7 @@ class BOUCLE_PG_cloth(
     )  # fmt: skip
 
 
-CLASSES = (BOUCLE_PG_cloth,)
+CLASSES = (BOUCLE_PG_take, BOUCLE_PG_cloth)
 
 
 def attach() -> None:

@@ -8,7 +8,7 @@ import bpy
 from . import handlers, native, preferences
 from .bridge import live, runtime, thickness_view
 from .core.transaction import Step, apply_all, revert_all
-from .operators import add, apply, bake, starters, worst
+from .operators import add, apply, bake, proxy, starters, worst
 from .operators import cache as cache_operators
 from .operators import cloth as cloth_operators
 from .operators import problems as problem_operators
@@ -23,6 +23,7 @@ _CLASSES = (
     *preferences.CLASSES,
     *add.CLASSES,
     *starters.CLASSES,
+    *proxy.CLASSES,
     *cloth_operators.CLASSES,
     *problem_operators.CLASSES,
     *bake.CLASSES,

@@ -22,6 +22,8 @@ class Operators:
     MAKE_COLLIDER = "boucle.make_collider"
     GO_TO_WORST_FRAME = "boucle.go_to_worst_frame"
     SELECT_WORST_EDGES = "boucle.select_worst_edges"
+    ADD_PROXY = "boucle.add_proxy"
+    DRIVE_WITH_PROXY = "boucle.drive_with_proxy"
     ADD_TAKE = "boucle.add_take"
     RESTORE_TAKE = "boucle.restore_take"
     REMOVE_TAKE = "boucle.remove_take"

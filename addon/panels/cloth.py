@@ -9,6 +9,8 @@ from bpy.types import Context, Panel
 
 from .._identifiers import Operators, Panels
 
+_DENSE = 20_000
+"""Vertices from which on a proxy is offered in place of the mesh itself."""
 _LETTER = 7.0
 """Width (pixels) of a letter of the default font at scale 1."""
 
@@ -57,6 +59,9 @@ class BOUCLE_PT_cloth(PhysicsPanel, Panel):
         by_area = settings.mass_mode == "density"
         column.prop(settings, "density" if by_area else "mass_per_vertex")
         self.layout.operator(Operators.CHECK, icon="CHECKMARK")
+        row = self.layout.row(align=True)
+        row.operator(Operators.ADD_PROXY)
+        row.operator(Operators.DRIVE_WITH_PROXY)
 
 
 def draw_button(panel: Panel, context: Context) -> None:
@@ -69,6 +74,8 @@ def draw_button(panel: Panel, context: Context) -> None:
         column.operator(Operators.DISABLE, text="Boucle Cloth", icon="X")
     else:
         column.operator(Operators.ENABLE, text="Boucle Cloth", icon="MOD_CLOTH")
+        if len(obj.data.vertices) > _DENSE:
+            column.operator(Operators.ADD_PROXY, text="Boucle Cloth Proxy", icon="MOD_MESHDEFORM")
 
 
 CLASSES = (BOUCLE_PT_cloth,)

@@ -26,9 +26,21 @@ class Operators:
     MAKE_COLLIDER = "boucle.make_collider"
     GO_TO_WORST_FRAME = "boucle.go_to_worst_frame"
     SELECT_WORST_EDGES = "boucle.select_worst_edges"
+    ADD_PROXY = "boucle.add_proxy"
+    DRIVE_WITH_PROXY = "boucle.drive_with_proxy"
+    ADD_TAKE = "boucle.add_take"
+    RESTORE_TAKE = "boucle.restore_take"
+    REMOVE_TAKE = "boucle.remove_take"
+    COMPARE_TAKE = "boucle.compare_take"
     APPLY_AS_REST = "boucle.apply_as_rest"
     APPLY_AS_START = "boucle.apply_as_start"
     APPLY_AS_SHAPE_KEY = "boucle.apply_as_shape_key"
+
+
+class Lists:
+    """Names of lists in panels."""
+
+    TAKES = "BOUCLE_UL_takes"
 
 
 class Menus:
@@ -56,6 +68,7 @@ class Panels:
     SOLVER_ADVANCED = "BOUCLE_PT_solver_advanced"
     CACHE = "BOUCLE_PT_cache"
     RESULT = "BOUCLE_PT_result"
+    TAKES = "BOUCLE_PT_takes"
 
 
 class PanelOrder:

@@ -16,6 +16,7 @@ from .bridge import (
     runtime,
     safe_step,
     saving,
+    takes,
     thickness_view,
 )
 
@@ -65,6 +66,7 @@ def load_pre(*_: Any) -> None:
     safe_step.forget()
     certificate.forget()
     findings.forget()
+    takes.forget()
     runtime.rendering.clear()
 
 

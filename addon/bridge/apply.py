@@ -59,6 +59,7 @@ def as_start(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
         resting = rest.positions(obj.data)
         obj.shape_key_add(name="Start", from_mix=False)
         key = obj.shape_key_add(name=REST_KEY, from_mix=False)
+        key.value = 0.0  # 1 in Blender 5.0
         key.data.foreach_set("co", resting)
         setattr(obj.boucle, REST_SETTING, key.name)
     obj.data.shape_keys.reference_key.data.foreach_set("co", positions)
@@ -81,6 +82,7 @@ def as_shape_key(obj: bpy.types.Object, scene: bpy.types.Scene, name: str) -> st
     if obj.data.shape_keys is None:
         obj.shape_key_add(name="Basis", from_mix=False)
     key = obj.shape_key_add(name=name or f"Frame {scene.frame_current}", from_mix=False)
+    key.value = 0.0  # 1 in Blender 5.0
     key.data.foreach_set("co", positions)
     live.show_anew(obj, scene)
     obj.update_tag()

@@ -10,7 +10,7 @@ import bpy
 from ..core import cache_paths
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, cannot_write
-from . import cache, live, registry, rest, runtime, slot, vertex_attributes
+from . import cache, live, registry, rest, runtime, slot, takes, vertex_attributes
 
 
 def before_save(path: str) -> None:
@@ -19,6 +19,7 @@ def before_save(path: str) -> None:
     cache.ensure_identity()
     if path:
         _bring_along(path)
+        takes.before_save(path)
 
 
 def after_save(scene: bpy.types.Scene) -> None:
@@ -31,6 +32,7 @@ def after_save(scene: bpy.types.Scene) -> None:
             slot.silence(found.cache)
         elif found.cache.filepath.startswith("//"):
             _name_in_full_if_lost(obj, found.cache)
+    takes.after_save()
     live.show_all(scene)
 
 

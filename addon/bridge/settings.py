@@ -15,6 +15,8 @@ PIN_THRESHOLD = 0.5
 """Soft pins are not supported yet: from this weight on a vertex is held, below it is free."""
 
 
+_DATA = frozenset({"POINTER", "COLLECTION"})
+
 ANY = 1e-6
 """From this weight on a vertex is taken for one of a group that only includes or excludes."""
 
@@ -24,7 +26,7 @@ def values(obj: bpy.types.Object) -> dict[str, Any]:
     settings = obj.boucle
     out: dict[str, Any] = {}
     for prop in settings.bl_rna.properties:
-        if prop.identifier in {"rna_type", "name"} or prop.is_readonly or prop.type == "POINTER":
+        if prop.identifier in {"rna_type", "name"} or prop.is_readonly or prop.type in _DATA:
             continue
         value = getattr(settings, prop.identifier)
         out[prop.identifier] = tuple(value) if getattr(prop, "is_array", False) else value

@@ -23,7 +23,11 @@ class CacheFiles(NamedTuple):
     @property
     def previous(self) -> CacheFiles:
         """The files of the bake before this one, kept until the user frees the cache."""
-        return CacheFiles(*(_with_middle(path, "previous") for path in self))
+        return self.with_middle("previous")
+
+    def with_middle(self, word: str) -> CacheFiles:
+        """The same files with a word before their endings."""
+        return CacheFiles(*(_with_middle(path, word) for path in self))
 
     def existing(self) -> list[str]:
         """Those of the files that are there."""

@@ -73,6 +73,16 @@ def differences(baked: Mapping[str, Any], now: Mapping[str, Any]) -> list[str]:
     return list(dict.fromkeys(words))
 
 
+def words_of(key: str) -> str:
+    """What a setting of a record is called."""
+    return _words(key)
+
+
+def is_list(key: str) -> bool:
+    """Whether a record keeps a digest in place of a setting, because it is a long list."""
+    return bool(_list_words(key))
+
+
 def _is_left_out(key: str, settings: Mapping[str, Any]) -> bool:
     """A list of vertices takes long to gather: the panel leaves it out, the check does not."""
     return bool(_list_words(key)) and not any(_list_words(name) for name in settings)

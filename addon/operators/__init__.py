@@ -9,7 +9,9 @@ from . import (
     copy_from_cloth,
     presets,
     problems,
+    proxy,
     starters,
+    takes,
     worst,
 )
 
@@ -22,7 +24,9 @@ _MODULES = (
     copy_from_cloth,
     presets,
     problems,
+    proxy,
     starters,
+    takes,
     worst,
 )
 

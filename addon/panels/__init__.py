@@ -11,6 +11,7 @@ from . import (
     shape,
     solver,
     springs,
+    takes,
 )
 
 _PARENTS = (
@@ -28,6 +29,7 @@ _OTHERS = (
     presets,
     problems,
     result,
+    takes,
 )
 
 CLASSES = tuple(cls for module in (*_PARENTS, *_OTHERS) for cls in module.CLASSES)

@@ -10,6 +10,8 @@ from bpy.types import Context, Panel
 from .._identifiers import Operators, Panels
 from .presets import draw_popover
 
+_DENSE = 20_000
+"""Vertices from which on a proxy is offered in place of the mesh itself."""
 _LETTER = 7.0
 """Width (pixels) of a letter of the default font at scale 1."""
 
@@ -66,6 +68,9 @@ class BOUCLE_PT_cloth(PhysicsPanel, Panel):
         self.layout.operator(Operators.CHECK, icon="CHECKMARK")
         if any(modifier.type == "CLOTH" for modifier in context.object.modifiers):
             self.layout.operator(Operators.COPY_FROM_CLOTH, icon="COPYDOWN")
+        row = self.layout.row(align=True)
+        row.operator(Operators.ADD_PROXY)
+        row.operator(Operators.DRIVE_WITH_PROXY)
 
 
 def draw_button(panel: Panel, context: Context) -> None:
@@ -78,6 +83,8 @@ def draw_button(panel: Panel, context: Context) -> None:
         column.operator(Operators.DISABLE, text="Boucle Cloth", icon="X")
     else:
         column.operator(Operators.ENABLE, text="Boucle Cloth", icon="MOD_CLOTH")
+        if len(obj.data.vertices) > _DENSE:
+            column.operator(Operators.ADD_PROXY, text="Boucle Cloth Proxy", icon="MOD_MESHDEFORM")
 
 
 CLASSES = (BOUCLE_PT_cloth,)

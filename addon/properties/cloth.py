@@ -14,6 +14,7 @@ from .problems import ProblemProperties
 from .shape import ShapeProperties
 from .solver import SolverProperties
 from .springs import SpringProperties
+from .takes import BOUCLE_PG_take, TakeProperties
 
 
 class BOUCLE_PG_cloth(
@@ -25,6 +26,7 @@ class BOUCLE_PG_cloth(
     CacheProperties,
     PresetProperties,
     ProblemProperties,
+    TakeProperties,
     PropertyGroup,
 ):
     """Settings of one cloth"""
@@ -36,7 +38,7 @@ class BOUCLE_PG_cloth(
     )  # fmt: skip
 
 
-CLASSES = (BOUCLE_PG_cloth,)
+CLASSES = (BOUCLE_PG_take, BOUCLE_PG_cloth)
 
 
 def attach() -> None:

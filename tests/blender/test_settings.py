@@ -93,6 +93,13 @@ class Layout:
 
         return Settings()
 
+    def template_list(self, kind, _name, data, items, active, number, **_):
+        import bpy
+
+        assert hasattr(bpy.types, kind)
+        for owner, name in ((data, items), (active, number)):
+            assert name in owner.bl_rna.properties, name
+
     def label(self, text="", **_):
         assert text, "an empty line"
         self.drawn.append(text)

@@ -12,6 +12,7 @@ from ..core import blender_cloth, points
 from ..core.blender_cloth import Reading
 from ..core.refusal import Refusal
 from . import animation, mesh_arrays, rest
+from .settings import ANY
 
 
 def find(obj: bpy.types.Object) -> bpy.types.ClothModifier | None:
@@ -39,10 +40,16 @@ def copy(obj: bpy.types.Object) -> tuple[str, bool]:
 
 def _carry(settings: bpy.types.PropertyGroup, row: blender_cloth.Row, reading: Reading) -> bool:
     """Set one property; False if something that is used has no place here."""
-    if not row.target or row.target not in settings.bl_rna.properties:
+    *groups, name = row.target.split(".")
+    for group in groups:
+        settings = getattr(settings, group, None)
+    if settings is None or name not in settings.bl_rna.properties:
         return not row.is_used(reading)
+    value = row.value(reading)
+    if value is None and settings.bl_rna.properties[name].type != "POINTER":
+        return True
     try:
-        setattr(settings, row.target, row.value(reading))
+        setattr(settings, name, value)
     except (AttributeError, TypeError, ValueError):  # a property of this name, but of another kind
         return not row.is_used(reading)
     return True
@@ -61,7 +68,13 @@ def _read(obj: bpy.types.Object, modifier: bpy.types.ClothModifier) -> Reading:
             f'"{obj.name}" has an area of {area:g} m² and edges of {edge:g} m: '
             "a cloth with faces is needed"
         )
-    return Reading(values, len(obj.data.vertices), area, edge)
+    return Reading(values, len(obj.data.vertices), area, edge, _soft_pins(obj, modifier))
+
+
+def _soft_pins(obj: bpy.types.Object, modifier: bpy.types.ClothModifier) -> int:
+    group = modifier.settings.vertex_group_mass
+    every, firm = (len(mesh_arrays.group_vertices(obj, group, weight)) for weight in (ANY, 1.0))
+    return every - firm
 
 
 def _plain(struct: bpy.types.bpy_struct) -> dict[str, Any]:

@@ -45,14 +45,17 @@ class Reading(NamedTuple):
     """Of the cloth (m²)."""
     edge: float
     """Mean length of its edges (m)."""
+    soft_pins: int = 0
+    """Vertices of its pin group whose weight is below 1."""
 
 
 class Row(NamedTuple):
     """One setting of ours and what it gets."""
 
     target: str
-    """The property of `object.boucle`; empty where we have no such thing."""
+    """The property of `object.boucle`, or of a group in it; empty where we have no such thing."""
     value: Callable[[Reading], Any]
+    """None leaves the property as it is."""
     label: str
     """What Blender's panels call it."""
     is_used: Callable[[Reading], bool] = lambda _: False
@@ -88,6 +91,12 @@ def bend_damping(reading: Reading) -> float:
     if reading.values["bending_model"] == "LINEAR":
         return bend(reading) * damping * TIME
     return FORCE * TIME * damping / 4.0 * _FOLD  # a hinge's is 1/4 c e² (N m s/rad)
+
+
+def pin_stiffness(reading: Reading) -> float | None:
+    """The stiffness (N/m) of a patch of soft pins together: Blender's is that of each vertex at weight 1."""
+    stiffness = spring("pin_stiffness")(reading)
+    return stiffness * reading.soft_pins if reading.soft_pins else None
 
 
 def thickness(reading: Reading) -> float:
@@ -136,7 +145,7 @@ ROWS = (
     Row("quality", quality, "Quality Steps"),
     Row("speed", _as_it_is("time_scale"), "Speed Multiplier", _used("time_scale", 1.0)),
     Row("pin_group", _as_it_is("vertex_group_mass"), "Pin Group"),
-    Row("pin_stiffness", spring("pin_stiffness"), "Pin Stiffness"),
+    Row("pin_stiffness", pin_stiffness, "Pin Stiffness"),
     Row("use_sewing", _as_it_is("use_sewing_springs"), "Sewing", _used("use_sewing_springs")),
     Row("sewing_force", lambda r: FORCE * r.values["sewing_force_max"], "Max Sewing Force"),
     Row("shrink", _as_it_is("shrink_min"), "Shrinking Factor", _used("shrink_min", 0.0)),
@@ -177,21 +186,21 @@ WEIGHTS = (
     "gravity", "all", "force", "vortex", "magnetic", "harmonic", "charge", "lennardjones", "wind",
     "curve_guide", "texture", "smokeflow", "turbulence", "drag", "boid",
 )  # fmt: skip
-"""Blender's field weights; ours are named `weight_<name>` where there are any."""
+"""Blender's field weights."""
 
 
 def rows() -> tuple[Row, ...]:
     """All rows, those of the field weights last."""
     weights = (
         Row(
-            f"weight_{name}",
+            f"field_weights.{name}",
             _as_it_is(f"weight_{name}"),
             f"Field Weight {name.title()}",
             _used(f"weight_{name}", 1.0),
         )
         for name in WEIGHTS
     )
-    return (*ROWS, *weights, Row("weight_collection", _as_it_is("weight_collection"), "Effector Collection",
+    return (*ROWS, *weights, Row("field_weights.collection", _as_it_is("weight_collection"), "Effector Collection",
                                  _used("weight_collection", None)))  # fmt: skip
 
 

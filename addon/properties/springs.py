@@ -14,6 +14,7 @@ class SpringProperties:
 
     stretch: FloatProperty(
         name="Stretch",
+        translation_context="Boucle",
         description="Stiffness of the springs along mesh edges (N/m)",
         default=500.0, min=0.0, max=_LARGEST, soft_max=10_000.0, precision=2,
         override=OVERRIDABLE, update=changed,
@@ -25,7 +26,7 @@ class SpringProperties:
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     bend: FloatProperty(
-        name="Bend",
+        name="Bending",
         description="Stiffness of the springs to the vertex after next (N/m)",
         default=5.0, min=0.0, max=_LARGEST, soft_max=1000.0, precision=2,
         override=OVERRIDABLE, update=changed,
@@ -60,6 +61,7 @@ class SpringProperties:
     )  # fmt: skip
     damping_stretch: FloatProperty(
         name="Stretch",
+        translation_context="Boucle",
         description="Damping of the springs along mesh edges (N·s/m)",
         default=0.01, min=0.0, max=_LARGEST, soft_max=1.0, precision=4, step=1,
         override=OVERRIDABLE, update=changed,
@@ -71,13 +73,14 @@ class SpringProperties:
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     damping_bend: FloatProperty(
-        name="Bend",
+        name="Bending",
         description="Damping of the springs to the vertex after next (N·s/m)",
         default=0.01, min=0.0, max=_LARGEST, soft_max=1.0, precision=4, step=1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     damping_law: EnumProperty(
         name="Law",
+        translation_context="Boucle",
         description="Which part of the relative velocity of a spring's ends is damped",
         items=(
             ("relative", "Relative", "All of the relative velocity"),

@@ -15,8 +15,9 @@ import bpy
 LANGUAGES = {"fr_FR": "fr"}
 """Folders by Blender's names of languages: by a shorter name Blender would miss those of other add-ons."""
 
-_CONTEXTS = ("*", "Operator")
-"""Blender looks up an operator's name in a context of its own; our words mean the same in both."""
+_CONTEXTS = ("*", "Operator", "Boucle")
+"""Where Blender looks: an operator's name has a context of its own. Blender's own words come first in both; what means
+something else here (to Blender, "Stretch" is a verb) is looked up in ours."""
 
 
 def read(folder: str) -> dict[str, str]:

@@ -67,6 +67,9 @@ def use_presets():
     ops.delete_preset(preset="Été 1")
     out["left"] = presets.own_names()
     bpy.context.object.boucle.enabled = False
+    kind = bpy.types.BOUCLE_OT_apply_preset
+    button = type("Button", (), {"preset": "Silk"})
+    out["tip"] = kind.description(bpy.context, button)
     out["poll"] = ops.apply_preset.poll()
     return out
 
@@ -91,4 +94,5 @@ def test_presets_are_applied_saved_with_all_their_settings_and_deleted(blender):
         assert words in said
     assert result["nothing"], "a preset with a mistake sets nothing"
     assert result["added"] == [0.41, "Pin", 7, 0.2]
+    assert result["tip"].startswith("Light silk")
     assert result["left"] == ["Bad"] and not result["poll"]

@@ -83,6 +83,11 @@ def collect():
         add(name, "presets")
         add(presets.description(name), "presets")
     translations = addon("translations")
+    unknown = {
+        prop.translation_context
+        for prop in bpy.types.Object.bl_rna.properties["boucle"].fixed_type.properties
+    } - set(translations._CONTEXTS)
+    assert not unknown, f"nothing is translated in {unknown}"
     said = bpy.app.translations.pgettext("Pin Group")
     return {"found": found, "fr": translations.read("fr"), "said": said}
 

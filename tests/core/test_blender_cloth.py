@@ -56,6 +56,12 @@ def test_bend_springs_are_damped_as_fast_as_blender_s_hinges():
         assert seconds == pytest.approx(hinge if model == "ANGULAR" else 0.5 * blender_cloth.TIME)
 
 
+def test_soft_pins_hold_as_one_patch_and_firm_ones_need_no_stiffness():
+    sheet = reading(pin_stiffness=2.0)
+    assert blender_cloth.pin_stiffness(sheet) is None
+    assert blender_cloth.pin_stiffness(sheet._replace(soft_pins=5)) == pytest.approx(5 * 20_000.0)
+
+
 def test_two_layers_keep_the_distance_of_blender_s():
     assert blender_cloth.thickness(reading(use_self_collision=True)) == 0.0075
     assert blender_cloth.thickness(reading()) == 0.02

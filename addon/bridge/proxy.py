@@ -38,15 +38,9 @@ def make(dense: bpy.types.Object, scene: bpy.types.Scene, vertex_count: int) -> 
     _decimate(proxy, scene, vertex_count / count)
     proxy.display_type = "WIRE"
     proxy.hide_render = True
-    if was_cloth:
-        dense.boucle.enabled = False
+    if not was_cloth:
+        cloth.set_range(proxy, scene)
     proxy.boucle.enabled = False
-    cloth.set_range(proxy, scene)
-    if was_cloth:
-        proxy.boucle.frame_start, proxy.boucle.frame_end = (
-            dense.boucle.frame_start,
-            dense.boucle.frame_end,
-        )
     proxy.boucle.enabled = True
     return proxy
 
@@ -55,41 +49,53 @@ def drive(dense: bpy.types.Object, proxy: bpy.types.Object, scene: bpy.types.Sce
     """Let the proxy move the dense mesh; what else was changed, in a sentence.
 
     Raises:
-        Refusal: Blender cannot bind one to the other.
+        Refusal: Blender cannot bind one to the other; the dense mesh is as it was.
     """
-    live.drop(proxy)
+    was_cloth = registry.is_cloth(dense)
+    if was_cloth:
+        dense.boucle.enabled = False
     if not proxy.boucle.enabled:
         cloth.set_range(proxy, scene)
         proxy.boucle.enabled = True
-    if registry.is_cloth(dense):
-        dense.boucle.enabled = False
-    modifier = next((m for m in dense.modifiers if m.type == "SURFACE_DEFORM"), None)
-    if modifier is None:
-        modifier = dense.modifiers.new(MODIFIER, "SURFACE_DEFORM")
-        place = next(
-            (k for k, one in enumerate(dense.modifiers) if one.type in slot.COUNT_CHANGING),
-            len(dense.modifiers) - 1,
-        )
-        dense.modifiers.move(len(dense.modifiers) - 1, place)
-    modifier = next(m for m in dense.modifiers if m.type == "SURFACE_DEFORM")
-    modifier.target = proxy
-    names = [one.name for one in dense.modifiers]
-    above = [
-        one for one in list(dense.modifiers)[: names.index(modifier.name)] if one.show_viewport
-    ]
-    off = [one.name for one in above]
-    for one in above:
-        one.show_viewport = one.show_render = False
+    live.drop(proxy)
+    name = _surface_deform(dense)
+    dense.modifiers[name].target = proxy
+    off = _switch_off_above(dense, name)
     with _at_rest(proxy):
-        trouble = _bind(dense, modifier.name)
-    if trouble:
-        dense.modifiers.remove(dense.modifiers[modifier.name])
-        for name in off:
-            dense.modifiers[name].show_viewport = dense.modifiers[name].show_render = True
-        raise Refusal(f'"{dense.name}" cannot be bound to "{proxy.name}": {trouble}')
-    if not off:
-        return ""
-    return f"the proxy does now what {', '.join(off)} did, which is off"
+        trouble = _bind(dense, name)
+    if not trouble:
+        return f"the proxy does now what {', '.join(off)} did, which is off" if off else ""
+    dense.modifiers.remove(dense.modifiers[name])
+    for other in off:
+        dense.modifiers[other].show_viewport = dense.modifiers[other].show_render = True
+    dense.boucle.enabled = was_cloth
+    raise Refusal(f'"{dense.name}" cannot be bound to "{proxy.name}": {trouble}')
+
+
+def _surface_deform(dense: bpy.types.Object) -> str:
+    """The name of the modifier that is bound, made if it is not there: above what changes the vertices."""
+    for modifier in dense.modifiers:
+        if modifier.type == "SURFACE_DEFORM":
+            return modifier.name
+    place = next(
+        (k for k, one in enumerate(dense.modifiers) if one.type in slot.COUNT_CHANGING),
+        len(dense.modifiers),
+    )
+    name = dense.modifiers.new(MODIFIER, "SURFACE_DEFORM").name
+    dense.modifiers.move(dense.modifiers.find(name), place)
+    return name
+
+
+def _switch_off_above(dense: bpy.types.Object, name: str) -> list[str]:
+    """Switch off what would move the dense mesh before the proxy does; their names."""
+    off = []
+    for modifier in dense.modifiers:
+        if modifier.name == name:
+            break
+        if modifier.show_viewport:
+            modifier.show_viewport = modifier.show_render = False
+            off.append(modifier.name)
+    return off
 
 
 def remove(proxy: bpy.types.Object) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import bpy
+from mathutils import Vector
 
 from ..core import mesh_check, points
 from ..core.mesh_check import Problem, Severity
@@ -74,19 +75,13 @@ def _support(obj: bpy.types.Object, scene: bpy.types.Scene, world: Points) -> It
 
 def _is_below(other: bpy.types.Object, world: Points) -> bool:
     """Whether a part of the object is lower than the cloth's highest point and under or over its outline."""
-    corners = [other.matrix_world @ corner for corner in map(_vector, other.bound_box)]
+    corners = [other.matrix_world @ corner for corner in map(Vector, other.bound_box)]
     for axis in (0, 1):
         if max(corner[axis] for corner in corners) < min(world[axis::3]):
             return False
         if min(corner[axis] for corner in corners) > max(world[axis::3]):
             return False
     return min(corner.z for corner in corners) < max(world[2::3])
-
-
-def _vector(corner: object) -> object:
-    from mathutils import Vector
-
-    return Vector(corner)
 
 
 def _frames(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:

@@ -74,10 +74,10 @@ def thick_for_edges(
         thickness: Radius of the cloth (m).
     """
     values = [float(value) for value in positions]
-    lengths = sorted(edge_lengths(values, ends))
+    lengths = edge_lengths(values, ends)
     found = {
         int(vertex)
-        for k, length in zip(range(0, len(ends), 2), edge_lengths(values, ends), strict=True)
+        for k, length in zip(range(0, len(ends), 2), lengths, strict=True)
         if length < 2.0 * thickness
         for vertex in ends[k : k + 2]
     }
@@ -85,8 +85,8 @@ def thick_for_edges(
         return []
     sentence = (
         f"Thickness is {thickness:.3g} m, more than half of the edges at {_vertices(len(found))} (the "
-        f"shortest is {lengths[0]:.3g} m): the cloth then touches itself at rest and takes longer: lower "
-        f"Thickness to {0.25 * lengths[len(lengths) // 2]:.2g} m, or merge short edges"
+        f"shortest is {min(lengths):.3g} m): the cloth then touches itself at rest and takes longer: lower "
+        f"Thickness to {0.5 * min(lengths):.2g} m, or merge short edges"
     )
     return [Problem(Severity.WARNING, sentence, sorted(found))]
 

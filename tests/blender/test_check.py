@@ -22,7 +22,19 @@ def crossed_scene():
         bpy.ops.object.mode_set(mode="OBJECT")
         return [vertex.index for vertex in obj.data.vertices if vertex.select]
 
+    def drawn_by(name):
+        from test_settings import Layout
+
+        drawn = []
+
+        class Panel:
+            layout = Layout(drawn)
+
+        getattr(bpy.types, name).draw(Panel(), bpy.context)
+        return drawn
+
     out["clean"] = check()
+    out["drawn clean"] = drawn_by("BOUCLE_PT_problems")
 
     # A flap of the sheet, folded through the rest of it.
     obj.data.vertices[0].co = (0.05, 0.3, 0.1)
@@ -47,6 +59,7 @@ def crossed_scene():
     obj.modifiers.new("Decimate", "DECIMATE")
     bpy.context.view_layer.update()
     out["setup"] = check()
+    out["drawn"] = drawn_by("BOUCLE_PT_problems")
     bpy.data.objects.remove(other)
     try:
         bpy.ops.boucle.select_problem(number=99)
@@ -82,6 +95,10 @@ def test_the_check_finds_each_problem_and_selects_its_culprits_alone(blender):
     )
     assert "check again" in found["beyond"]
     assert found["clear"] == ""
+    assert found["drawn clean"] == ["None found; press Check"]
+    selecting = [row for row in found["setup"] if row["selects"]]
+    assert found["drawn"].count("boucle.select_problem") == len(selecting) > 0
+    assert len(found["drawn"]) > len(found["setup"])
 
 
 def fall_through():

@@ -1,6 +1,21 @@
 """Takes: a bake kept under a name, brought back to the bit with its settings, compared in words, carried along by saving."""
 
 
+def drawn(settings):
+    import bpy
+    from test_settings import Layout
+
+    out = []
+
+    class Panel:
+        layout = Layout(out)
+
+    bpy.types.BOUCLE_PT_takes.draw(Panel(), bpy.context)
+    row = bpy.types.BOUCLE_UL_takes
+    row.draw_item(Panel(), bpy.context, Layout(out), settings, settings.takes[0], 0, settings, "")
+    return out
+
+
 def keep_and_restore(folder):
     import os
     from pathlib import Path
@@ -26,6 +41,7 @@ def keep_and_restore(folder):
     out["notes"] = [take.note for take in settings.takes]
     out["dates"] = [len(take.date) for take in settings.takes]
     ops.compare_take(index=0)
+    out["drawn"] = drawn(settings)
     out["comparison"] = settings.take_comparison.split("\n")
 
     # Restored with settings, then only the cache.
@@ -85,6 +101,8 @@ def test_takes_are_kept_restored_compared_and_removed(blender):
     assert found["notes"][0].startswith("stretch stiffness 500") and "bdf2" in found["notes"][0]
     assert "stretch stiffness 900" in found["notes"][1] and found["dates"] == [16, 16]
     text = found["comparison"]
+    assert {"boucle.add_take", "boucle.restore_take", "name", "note"} <= set(found["drawn"])
+    assert any("largest strain" in line for line in found["drawn"])
     assert text[0] == '"Soft: 1/2" against the bake'
     assert "6 against 8 frames" in text
     assert "integrator bdf2 against implicit_euler" in text

@@ -19,6 +19,7 @@ import bpy
 
 from .. import native
 from ..core import drift, points, quantity
+from ..core.bake import Moment
 from ..core.live_frames import Action, Frame, LiveFrames
 from ..core.points import Points
 from ..core.progress import size
@@ -153,9 +154,9 @@ def _build(
     local = rest.positions(obj.data) if is_direct else sampling.targets(obj, depsgraph)
     matrix = sampling.object_matrix(obj, depsgraph)
     sampling.inverse(obj, matrix)
-    met = Colliders(obj, scene, depsgraph)
+    met = Colliders([obj], scene, depsgraph)
     world = points.transform(local, matrix, "d")
-    solver = simulation.maker(obj, description, world, colliders=met.arrays)()
+    solver = simulation.maker(description, [simulation.mesh(obj, world)], colliders=met.arrays)()
     limit = memory_limit()
     first = Frame(local, solver.certificate(), _read_numbers(solver, obj))
     shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
@@ -163,7 +164,7 @@ def _build(
         uid=obj.session_uid,
         solver=solver,
         frames=LiveFrames(obj.boucle.frame_start, first, limit),
-        is_pinned=simulation.is_pinned(description),
+        is_pinned=simulation.is_pinned(description, 0),
         colliders=met,
         display=shown,
         basis=_basis(obj, scene),
@@ -216,13 +217,13 @@ def _step(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgrap
         return
     try:
         targets = session.colliders.targets(depsgraph)
-        pose = sampling.pose(obj, depsgraph, session.is_pinned, targets)
+        pose = sampling.pose(obj, depsgraph, session.is_pinned)
     except Refusal as refusal:
         session.waits = session.refusal = str(refusal)
         return
     session.refusal = ""
     try:
-        pose.aim(session.solver)
+        Moment([pose], targets).aim(session.solver)
         certificate = session.solver.advance()
         positions = _read(session, pose.to_object, len(obj.data.vertices))
         session.frames.add(Frame(positions, certificate, _read_numbers(session.solver, obj)))
@@ -243,7 +244,7 @@ def _read(session: Session, to_object: points.Affine, vertex_count: int) -> Poin
 
 def _read_numbers(solver: Any, obj: bpy.types.Object) -> Numbers:
     out = quantity.empty(vertex_attributes.wanted(obj), len(obj.data.vertices))
-    quantity.read(solver, out)
+    quantity.read(solver, 0, out)
     return out
 
 

@@ -16,6 +16,8 @@ class Operators:
     FREE_BAKE = "boucle.free_bake"
     RESTORE_BAKE = "boucle.restore_bake"
     ADOPT_BAKE = "boucle.adopt_bake"
+    EXPORT_USD = "boucle.export_usd"
+    EXPORT_ALEMBIC = "boucle.export_alembic"
     RESET = "boucle.reset"
     CHECK = "boucle.check"
     APPLY_PRESET = "boucle.apply_preset"

@@ -33,6 +33,8 @@ DivergedError: type[Exception] = getattr(_core, "DivergedError", _NeverRaised)
 """A position left the finite numbers; the state is that of the last good frame."""
 UnstableError: type[Exception] = getattr(_core, "UnstableError", _NeverRaised)
 """From a frame on the settings would not stay stable; the state is that of the last good frame."""
+InterruptionError: type[Exception] = getattr(_core, "InterruptionError", _NeverRaised)
+"""A frame was stopped from outside; the state is that of the frame before it."""
 InternalError: type[Exception] = getattr(_core, "InternalError", _NeverRaised)
 """A caught panic: the simulation must be thrown away."""
 

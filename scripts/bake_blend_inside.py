@@ -173,7 +173,7 @@ def listed(names: Sequence[str]) -> str:
 
 
 class Baker:
-    """Bakes the cloths of a file one after another."""
+    """Bakes the cloths of a file: those that collide with each other together, others one after another."""
 
     def __init__(
         self,
@@ -196,10 +196,9 @@ class Baker:
         preflight = addon("bridge.preflight")
         for cloth, scene in scenes:
             preflight.refuse_errors(cloth, scene)
-        names = [(cloth.name, scene.name) for cloth, scene in scenes]
         code = DONE
-        for name, scene_name in names:
-            result = self.bake_one(name, scene_name)
+        for names, scene_name in self.groups(scenes):
+            result = self.bake_together(names, scene_name)
             code = code or result
             if result in {STOPPED, CACHE}:
                 break
@@ -210,19 +209,31 @@ class Baker:
             code = code or saved
         if code == DONE:
             where = self.out or "the file's own caches"
-            count = "1 cloth" if len(names) == 1 else f"{len(names)} cloths"
+            count = "1 cloth" if len(scenes) == 1 else f"{len(scenes)} cloths"
             self.tell({"kind": "sentence", "text": f"{count} baked: {where}"})
         return code
 
-    def bake_one(self, name: str, scene_name: str) -> int:
-        """Bake one cloth and return the exit code."""
+    def groups(self, scenes: Sequence[tuple[Any, Any]]) -> list[tuple[list[str], str]]:
+        """Names of cloths that are baked together, with their scene's."""
+        out = []
+        for scene in dict.fromkeys(scene for _, scene in scenes):
+            cloths = [cloth for cloth, of in scenes if of == scene]
+            groups, notes = addon("bridge.together").groups(cloths, scene)
+            for note in notes:
+                self.tell({"kind": "complaint", "text": note})
+            out += [([cloth.name for cloth in group], scene.name) for group in groups]
+        return out
+
+    def bake_together(self, names: Sequence[str], scene_name: str) -> int:
+        """Bake cloths in one simulation, mostly a single one, and return the exit code."""
         import bpy
 
         native, refusal, bridge = addon("native"), addon("core.refusal"), addon("bridge.bake")
-        cloth, scene = bpy.data.objects[name], bpy.data.scenes[scene_name]
-        bake = bridge.Bake(cloth, scene, self.options(cloth))
+        cloths, scene = [bpy.data.objects[name] for name in names], bpy.data.scenes[scene_name]
+        bake = bridge.Bake(cloths, scene, self.options(cloths))
         self.bakes.append(bake)
-        self.tell({"kind": "cloth", "text": f"{name}: {len(cloth.data.vertices)} vertices"})
+        count = sum(len(cloth.data.vertices) for cloth in cloths)
+        self.tell({"kind": "cloth", "text": f"{bake.title}: {count} vertices"})
         try:
             with closing(bake.steps()) as steps:
                 self.pull(bake, steps)
@@ -242,14 +253,14 @@ class Baker:
         """Simulate frame after frame until the end or a request to stop."""
         has_rest = not self.out
         for step in steps:
-            if bake.store is None:
+            if bake.stores is None:
                 step.run()  # the solver is built, no frame is simulated yet
                 continue
             if not has_rest:
-                self.write_rest(bake.name)
+                self.write_rest(bake.names)
                 has_rest = True
             step.run()
-            first = bake.store.plan.first
+            first = bake.stores.plan.first
             event = {"kind": "frame", "frame": step.frame, "first": first, "last": bake.end}
             self.tell({**event, "seconds": step.seconds})
             if self.out and time.monotonic() - self._reported > REPORT_SECONDS:
@@ -257,17 +268,17 @@ class Baker:
             if self.is_stopped():
                 return
         if not has_rest:  # there was no frame to simulate
-            self.write_rest(bake.name)
+            self.write_rest(bake.names)
 
-    def options(self, cloth: Any) -> Any:
-        """How to bake one cloth."""
+    def options(self, cloths: Sequence[Any]) -> Any:
+        """How to bake cloths that start at the same frame."""
         frames = self.request["frames"]
         if frames:
-            frames = (max(frames[0], cloth.boucle.frame_start), frames[1])
+            frames = (max(frames[0], cloths[0].boucle.frame_start), frames[1])
         files = None
         if self.out:
-            stem = os.path.join(self.out, file_name(cloth.name))
-            files = addon("core.cache_paths").files_of(f"{stem}.pc2")
+            stems = [os.path.join(self.out, file_name(cloth.name)) for cloth in cloths]
+            files = [addon("core.cache_paths").files_of(f"{stem}.pc2") for stem in stems]
         return addon("bridge.bake").Options(
             resume=self.request["resume"],
             frames=frames,
@@ -280,20 +291,21 @@ class Baker:
         self.tell({"kind": "complaint", "text": addon("bridge.bake").outcome(bake, error)})
         return code
 
-    def write_rest(self, name: str) -> None:
-        """The rest mesh as OBJ, in object space as the PC2."""
+    def write_rest(self, names: Sequence[str]) -> None:
+        """The rest meshes as OBJ, in object space as the PC2."""
         import bpy
 
-        cloth = bpy.data.objects[name]
-        positions = addon("bridge.rest").positions(cloth.data)
-        faces = [list(face.vertices) for face in cloth.data.polygons]
-        path = os.path.join(self.out, f"{file_name(cloth.name)}.obj")
-        addon("core.obj_file").write(path, cloth.name, positions, faces)
+        for cloth in (bpy.data.objects[name] for name in names):
+            positions = addon("bridge.rest").positions(cloth.data)
+            faces = [list(face.vertices) for face in cloth.data.polygons]
+            path = os.path.join(self.out, f"{file_name(cloth.name)}.obj")
+            addon("core.obj_file").write(path, cloth.name, positions, faces)
 
     def write_report(self) -> None:
         """report.json: one for all cloths so far."""
         report = addon("core.report")
-        reports = [bake.store.rows.as_dict() for bake in self.bakes if bake.store]
+        begun = [bake.stores for bake in self.bakes if bake.stores]
+        reports = [store.rows.as_dict() for stores in begun for store in stores.each]
         if reports:
             content = report.encode(report.joined(reports))
             addon("core.whole_file").replace(os.path.join(self.out, "report.json"), content)

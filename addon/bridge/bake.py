@@ -1,10 +1,10 @@
-"""The bake of one cloth in Blender: the generator that a window and a script both pull."""
+"""The bake of cloths in Blender, mostly of one: the generator that a window and a script both pull."""
 
 from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -13,12 +13,14 @@ import bpy
 
 from .. import native
 from ..core import bake as core_bake
-from ..core import drift, points, progress, report, scene_json
-from ..core.bake import Plan, Pose, Step, Store
+from ..core import drift, joint, points, progress, report, scene_json
+from ..core.bake import Moment, Step
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, sentence_of
+from ..core.store import Plan, Store, Stores
 from . import (
     cache,
+    colliders,
     live,
     preflight,
     registry,
@@ -29,7 +31,6 @@ from . import (
     slot,
     vertex_attributes,
 )
-from .colliders import Colliders
 
 
 @dataclass(frozen=True)
@@ -38,40 +39,62 @@ class Options:
 
     resume: bool = False
     frames: tuple[int, int] | None = None
-    """First and last frame to keep; the object's own range if None."""
-    files: CacheFiles | None = None
-    """Where to write; the object's own cache if None."""
+    """First and last frame to keep; the cloths' own range if None."""
+    files: Sequence[CacheFiles] | None = None
+    """Where to write, for each cloth; the objects' own caches if None."""
     threads: int = 0
     """0 takes every core."""
 
 
 class Bake:
-    """One cloth's bake. Only its `session_uid` is held between two steps, never the object."""
+    """A bake of cloths that are simulated together. Only their `session_uid` is held between two steps, never an object."""
 
     def __init__(
-        self, obj: bpy.types.Object, scene: bpy.types.Scene, options: Options | None = None
+        self,
+        cloths: Sequence[bpy.types.Object],
+        scene: bpy.types.Scene,
+        options: Options | None = None,
     ) -> None:
         """Prepare nothing yet; `steps` does all the work."""
-        self.name = obj.name
+        self.names = [obj.name for obj in cloths]
         self.options = options or Options()
-        self.uid = obj.session_uid
+        self.uids = [obj.session_uid for obj in cloths]
         self._scene_name = scene.name
-        self.store: Store | None = None
+        self.stores: Stores | None = None
+        self._interrupter: Any = None
         self._began = (0.0, 1 << 30)
         """When the first frame was asked for, and which one it was."""
-        self.end = self.options.frames[1] if self.options.frames else obj.boucle.frame_end
+        ends = (obj.boucle.frame_end for obj in cloths)
+        self.end = self.options.frames[1] if self.options.frames else max(ends)
+
+    @property
+    def title(self) -> str:
+        """What is baked, in words."""
+        return " and ".join(
+            [", ".join(self.names[:-1]), self.names[-1]] if self.names[1:] else self.names
+        )
 
     @property
     def last_frame(self) -> int | None:
         """The last frame that is kept."""
-        return self.store.last_frame if self.store and self.store.sample_count else None
+        return self.stores.last_frame if self.stores and self.stores.sample_count else None
 
     def progress(self, step: Step) -> str:
         """How far the bake is, for the status bar."""
         began, first = self._began
         frames = step.frame - first
         mean = (time.monotonic() - began) / frames if frames > 0 else 0.0
-        return progress.line(self.name, step.frame, self.end, mean, self.end - step.frame + 1)
+        return progress.line(self.title, step.frame, self.end, mean, self.end - step.frame + 1)
+
+    def part(self, step: Step) -> float:
+        """How far the bake is, from 0 to 1."""
+        first = min(self._began[1], step.frame)
+        return (step.frame - first) / max(self.end + 1 - first, 1)
+
+    def interrupt(self) -> None:
+        """Let the step that is running end at once, without its frame."""
+        if self._interrupter is not None:
+            self._interrupter.interrupt()
 
     def steps(self) -> Iterator[Step]:
         """Simulate and write; leaves the scene at the frame where it stood.
@@ -83,101 +106,157 @@ class Bake:
             yield from self._steps()
 
     def _steps(self) -> Iterator[Step]:
-        obj, scene = self._object(), self._scene()
-        preflight.refuse_errors(obj, scene)
-        start = obj.boucle.frame_start
-        depsgraph = self._go_to(start)
-        description = settings.describe(obj, scene, with_groups=True)
+        cloths, scene = self._objects(), self._scene()
+        for obj in cloths:
+            preflight.refuse_errors(obj, scene)
+        start = cloths[0].boucle.frame_start
+        self._go_to(start)
+        description = self._describe(cloths, scene)
         self._restrict(description)
-        sampling.refuse_other_count(obj, depsgraph)
-        matrix = sampling.object_matrix(obj, depsgraph)
-        rest_world = points.transform(sampling.targets(obj, depsgraph), matrix, "d")
-        met = Colliders(obj, scene, depsgraph)
-        make = simulation.maker(obj, description, rest_world, self.options.threads, met.arrays)
+        met = colliders.Colliders(cloths, scene, self._depsgraph_of(cloths[0]))
+        meshes = [simulation.mesh(obj, self._rest(obj)) for obj in cloths]
+        make = simulation.maker(description, meshes, self.options.threads, met.arrays)
         build = Step(start, make)
-        record = self._record(obj, description)
+        records = self._records(cloths, scene, description)
         yield build
         solver = build.result()
-        self.store = self._make_store(self._object(), description, record, solver)
-        is_pinned = simulation.is_pinned(description)
+        self._interrupter = solver.interrupter()
+        self.stores = self._make_stores(description, records, solver)
+        is_pinned = [simulation.is_pinned(description, cloth) for cloth in range(len(cloths))]
 
-        def pose_at(frame: int) -> Pose:
+        def moment_at(frame: int) -> Moment:
             if frame < self._began[1]:
                 self._began = (time.monotonic(), frame)
-            return self._pose(frame, is_pinned, met)
+            return self._moment(frame, is_pinned, met)
 
         try:
             yield from core_bake.bake(
-                solver, self.store, pose_at, self.options.resume, native.InternalError
+                solver, self.stores, moment_at, self.options.resume, native.InternalError
             )
         finally:
-            self._attach(record)
+            self._attach()
+
+    def _describe(
+        self, cloths: Sequence[bpy.types.Object], scene: bpy.types.Scene
+    ) -> dict[str, Any]:
+        """The scene description of all cloths."""
+        if len(cloths) == 1:
+            return settings.describe(cloths[0], scene, with_groups=True)
+        by_name = {obj.name: obj for obj in cloths}
+        described = [settings.describe(obj, scene, True, others=cloths) for obj in cloths]
+        return joint.join(
+            described, lambda one, other: colliders.meet(by_name[one], by_name[other])
+        )
+
+    def _rest(self, obj: bpy.types.Object) -> points.Points:
+        """The rest positions (m) in world space."""
+        depsgraph = self._depsgraph_of(obj)
+        sampling.refuse_other_count(obj, depsgraph)
+        matrix = sampling.object_matrix(obj, depsgraph)
+        return points.transform(sampling.targets(obj, depsgraph), matrix, "d")
 
     def _restrict(self, description: dict[str, Any]) -> None:
-        """Frames that are kept may end before or after the object's own range."""
+        """Frames that are kept may end before or after the cloths' own range."""
         if self.options.frames is None:
             return
         first, end = self.options.frames
         start = description["scene"]["frames"][0]
         if end < first or first < start:
             raise Refusal(
-                f'"{self.name}": frames {first} to {end} cannot be kept: accepted is a range '
+                f'"{self.names[0]}": frames {first} to {end} cannot be kept: accepted is a range '
                 f"that begins at the cloth's start frame {start} or later"
             )
         description["scene"]["frames"][1] = end
 
-    def _record(self, obj: bpy.types.Object, description: dict[str, Any]) -> dict[str, Any]:
-        record = settings.record(obj, description)
-        kept = self.options.frames
-        first = kept[0] if kept else description["scene"]["frames"][0]
-        return {**record, "first": first, "end": self.end, "is_part": kept is not None}
-
-    def _make_store(
+    def _records(
         self,
-        obj: bpy.types.Object,
+        cloths: Sequence[bpy.types.Object],
+        scene: bpy.types.Scene,
         description: dict[str, Any],
-        record: dict[str, Any],
-        solver: Any,
-    ) -> Store:
-        plan = Plan(
-            start=description["scene"]["frames"][0],
-            first=record["first"],
-            end=self.end,
-            vertex_count=record["vertices"],
-            digest=drift.whole_digest({**record, "end": None}),
-            keeps=vertex_attributes.wanted(obj),
-            settling=scene_json.settling(description),
-        )
+    ) -> list[dict[str, Any]]:
+        """What the bake remembers of each cloth, described alone, as it is when it is compared later."""
+        kept = self.options.frames
+        cache.ensure_identity()
+        known = {obj.boucle.uuid: obj.name for obj in cloths}
+        records = []
+        for obj in cloths:
+            if len(cloths) > 1:
+                description = settings.describe(obj, scene, with_groups=True)
+            record = settings.record(obj, description)
+            first = kept[0] if kept else obj.boucle.frame_start
+            record.update(first=first, end=self.end, is_part=kept is not None)
+            if len(cloths) > 1:
+                record["together"] = {u: name for u, name in known.items() if u != obj.boucle.uuid}
+            records.append(record)
+        return records
+
+    def _make_stores(
+        self, description: dict[str, Any], records: list[dict[str, Any]], solver: Any
+    ) -> Stores:
+        left_out = {"end": None, "together": None}
+        remembered = [{**record, **left_out} for record in records]
+        digest = drift.whole_digest(remembered[0] if len(records) == 1 else {"all": remembered})
+        stores = []
+        for number, (obj, record) in enumerate(zip(self._objects(), records, strict=True)):
+            plan = Plan(
+                start=description["scene"]["frames"][0],
+                first=record["first"],
+                end=self.end,
+                vertex_count=record["vertices"],
+                digest=digest,
+                keeps=vertex_attributes.wanted(obj),
+                settling=scene_json.settling(description),
+            )
+            rows = self._report(obj, description, solver.spring_count(number))
+            rows.record = record
+            files = self.options.files[number] if self.options.files else cache.own_files(obj)
+            stores.append(Store(files, plan, rows, keeps_previous=self.options.files is None))
+        return Stores(stores)
+
+    def _report(
+        self, obj: bpy.types.Object, description: dict[str, Any], springs: int
+    ) -> report.Report:
         mesh = obj.data
         cloth = {
             "name": obj.name,
             "vertices": len(mesh.vertices),
             "triangles": len(mesh.loops) - 2 * len(mesh.polygons),
-            "springs": solver.spring_count(0),
+            "springs": springs,
         }
         threads = self.options.threads or os.cpu_count() or 1
         rows = report.Report(native.manifest_version(), bpy.data.filepath, threads, cloth)
         rows.head["integrator"] = description["solver"]["integrator"]
         rows.head["hash_algorithm"] = "xxh3-64"
-        rows.record = record
-        files = self.options.files or cache.own_files(obj)
-        return Store(files, plan, rows, keeps_previous=self.options.files is None)
+        if len(self.uids) > 1:
+            rows.head["together"] = self.names
+        return rows
 
-    def _pose(self, frame: int, is_pinned: bool, met: Colliders) -> Pose:
-        depsgraph = self._go_to(frame)
-        return sampling.pose(self._object(), depsgraph, is_pinned, met.targets(depsgraph))
+    def _moment(self, frame: int, is_pinned: Sequence[bool], met: colliders.Colliders) -> Moment:
+        self._go_to(frame)
+        cloths = self._objects()
+        poses = [
+            sampling.pose(obj, self._depsgraph_of(obj), pinned)
+            for obj, pinned in zip(cloths, is_pinned, strict=True)
+        ]
+        return Moment(poses, met.targets(self._depsgraph_of(cloths[0])))
 
-    def _attach(self, record: dict[str, Any]) -> None:
-        """Play what is there, if it is the object's own cache; a folder elsewhere is left alone."""
-        obj = registry.by_uid(self.uid)
-        if self.options.files is None and obj is not None and self.store.sample_count:
-            cache.attach(obj, self.store.files.pc2, record)
+    def _attach(self) -> None:
+        """Play what is there, if it is the objects' own caches; a folder elsewhere is left alone."""
+        if self.options.files is not None or not self.stores.sample_count:
+            return
+        for uid, store in zip(self.uids, self.stores.each, strict=True):
+            obj = registry.by_uid(uid)
+            if obj is not None:
+                cache.attach(obj, store.files.pc2, store.rows.record)
 
-    def _object(self) -> bpy.types.Object:
-        obj = registry.by_uid(self.uid)
-        if obj is None or not registry.is_cloth(obj):
-            raise Refusal(f'"{self.name}" is no Boucle cloth any more: frames so far are kept')
-        return obj
+    def _objects(self) -> list[bpy.types.Object]:
+        found = []
+        for uid, name in zip(self.uids, self.names, strict=True):
+            obj = registry.by_uid(uid)
+            if obj is None or not registry.is_cloth(obj):
+                raise Refusal(f'"{name}" is no Boucle cloth any more: frames so far are kept')
+            found.append(obj)
+        return found
 
     def _scene(self) -> bpy.types.Scene:
         scene = bpy.data.scenes.get(self._scene_name)
@@ -185,56 +264,69 @@ class Bake:
             raise Refusal(f'the scene "{self._scene_name}" is gone: frames so far are kept')
         return scene
 
-    def _go_to(self, frame: int) -> bpy.types.Depsgraph:
-        scene = self._scene()
-        scene.frame_set(frame)
-        layer = registry.layer_of(self._object(), scene)
+    def _go_to(self, frame: int) -> None:
+        self._objects()
+        self._scene().frame_set(frame)
+
+    def _depsgraph_of(self, obj: bpy.types.Object) -> bpy.types.Depsgraph:
+        layer = registry.layer_of(obj, self._scene())
         return layer.depsgraph if layer.depsgraph else bpy.context.evaluated_depsgraph_get()
 
     @contextmanager
     def _quiet(self) -> Iterator[None]:
         """Live mode still, the rest shape in place, modifiers below the slot off; all restored after."""
-        obj, scene = self._object(), self._scene()
+        cloths, scene = self._objects(), self._scene()
         frame, subframe = scene.frame_current, scene.frame_subframe
-        live.drop(obj)
-        slot.ensure(obj)
-        slot.find(obj).cache.show_viewport = False
-        shown = {modifier.name: modifier.show_viewport for modifier in slot.below(obj)}
+        shown: list[dict[str, bool]] = []
+        for obj in cloths:
+            live.drop(obj)
+            slot.ensure(obj)
+            slot.find(obj).cache.show_viewport = False
+            shown.append({modifier.name: modifier.show_viewport for modifier in slot.below(obj)})
         runtime.busy.add("bake")
         try:
-            for name in shown:
-                obj.modifiers[name].show_viewport = False
+            for obj, names in zip(cloths, shown, strict=True):
+                for name in names:
+                    obj.modifiers[name].show_viewport = False
             yield
         finally:
-            self._restore(shown)
+            for uid, states in zip(self.uids, shown, strict=True):
+                _restore(registry.by_uid(uid), states)
             if bpy.data.scenes.get(self._scene_name) is not None:
                 self._scene().frame_set(frame, subframe=subframe)
             runtime.busy.discard("bake")
             self._show_attributes()
 
     def _show_attributes(self) -> None:
-        obj, scene = registry.by_uid(self.uid), bpy.data.scenes.get(self._scene_name)
-        if registry.is_cloth(obj) and scene is not None:
-            live.show_attributes(obj, scene)
+        scene = bpy.data.scenes.get(self._scene_name)
+        for uid in self.uids:
+            obj = registry.by_uid(uid)
+            if registry.is_cloth(obj) and scene is not None:
+                live.show_attributes(obj, scene)
 
-    def _restore(self, shown: dict[str, bool]) -> None:
-        obj = registry.by_uid(self.uid)
-        if obj is None:
-            return
-        for name, state in shown.items():
-            if obj.modifiers.get(name) is not None:
-                obj.modifiers[name].show_viewport = state
-        found = slot.find(obj)
-        if found is not None:
-            found.cache.show_viewport = bool(slot.played(found.cache))
+
+def _restore(obj: bpy.types.Object | None, shown: dict[str, bool]) -> None:
+    """Let a cloth's modifiers be seen again as they were."""
+    if obj is None:
+        return
+    for name, state in shown.items():
+        if obj.modifiers.get(name) is not None:
+            obj.modifiers[name].show_viewport = state
+    found = slot.find(obj)
+    if found is not None:
+        found.cache.show_viewport = bool(slot.played(found.cache))
 
 
 def outcome(done: Bake, error: BaseException | None) -> str:
     """What became of a bake, in one sentence."""
+    names = ", ".join(f'"{name}"' for name in done.names)
+    are = "are" if len(done.names) > 1 else "is"
     kept = f"frames up to {done.last_frame} are kept" if done.last_frame is not None else ""
     if error is None:
-        return f'"{done.name}" is baked to frame {done.last_frame}'
-    if isinstance(error, GeneratorExit):
-        return f'"{done.name}" was stopped' + (f"; {kept}, Resume goes on" if kept else "")
+        together = " together" if len(done.names) > 1 else ""
+        return f"{names} {are} baked{together} to frame {done.last_frame}"
+    if isinstance(error, GeneratorExit | native.InterruptionError):
+        were = "were" if len(done.names) > 1 else "was"
+        return f"{names} {were} stopped" + (f"; {kept}, Resume goes on" if kept else "")
     text = sentence_of(error)
     return f"{text}; {kept}" if kept and "kept" not in text else text

@@ -144,6 +144,29 @@ def drift_of(obj: bpy.types.Object, scene: bpy.types.Scene, in_full: bool) -> li
     then = record_of(obj)
     if not then:
         return []
+    return _own_drift(obj, scene, then, in_full) + _drift_of_others(obj, scene, then, in_full)
+
+
+def _drift_of_others(
+    obj: bpy.types.Object, scene: bpy.types.Scene, then: dict[str, Any], in_full: bool
+) -> list[str]:
+    """The cloths that were baked together with this one and are not as they were."""
+    names = then.get("together", {})
+    if not names:
+        return []
+    found = {o.boucle.uuid: o for o in registry.all_cloths() if o.library == obj.library}
+    words = []
+    for key, name in names.items():
+        record = record_of(found[key]) if key in found else {}
+        is_same = bool(record) and record.get("bake") == then.get("bake")
+        if not is_same or _own_drift(found[key], scene, record, in_full):
+            words.append(f'the cloth "{name}"')
+    return words
+
+
+def _own_drift(
+    obj: bpy.types.Object, scene: bpy.types.Scene, then: dict[str, Any], in_full: bool
+) -> list[str]:
     try:
         description = settings.describe(obj, scene, with_groups=in_full)
     except Refusal as refusal:

@@ -7,7 +7,7 @@ mesh that is seen.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import bpy
@@ -20,6 +20,17 @@ from . import animation, mesh_arrays, registry, sampling
 
 Arrays = tuple[Points, Points, Points]
 """Positions (m, world space), float64, flat; first corner of each face; vertex of each corner."""
+
+
+def meet(one: bpy.types.Object, other: bpy.types.Object) -> bool:
+    """Whether two cloths that are simulated together collide: if both collide with objects, and with this one."""
+    for cloth, thing in ((one, other), (other, one)):
+        wanted = cloth.boucle.collision_collection
+        if not cloth.boucle.object_collision:
+            return False
+        if wanted is not None and thing not in set(wanted.all_objects):
+            return False
+    return True
 
 
 def find(cloth: bpy.types.Object, scene: bpy.types.Scene) -> list[bpy.types.Object]:
@@ -80,29 +91,35 @@ class _Known:
     key: tuple[str, str | None]
     uid: int
     vertex_count: int
+    cloth: str
+    """The name of a cloth that meets it."""
 
 
 class Colliders:
-    """The colliders of one cloth while it is simulated, in the order of its scene description."""
+    """The colliders of cloths while they are simulated, in the order of their scene description: by name."""
 
     def __init__(
-        self, cloth: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
+        self,
+        cloths: Sequence[bpy.types.Object],
+        scene: bpy.types.Scene,
+        depsgraph: bpy.types.Depsgraph,
     ) -> None:
         """Look at them at the start frame.
 
         Raises:
             Refusal: One of them is not evaluated.
         """
-        self._cloth = cloth.name
         self._known: list[_Known] = []
         self.arrays: list[Arrays] = []
         """Their meshes at the start frame, for the solver."""
-        for obj in find(cloth, scene):
-            evaluated = self._evaluated(obj, depsgraph)
+        met = {obj: cloth.name for cloth in reversed(cloths) for obj in find(cloth, scene)}
+        for obj in sorted(met.keys() - set(cloths), key=lambda obj: obj.name_full):
+            evaluated = self._evaluated(obj, depsgraph, met[obj])
             faces = mesh_arrays.topology(evaluated.data)
             self.arrays.append((_positions(evaluated), faces.starts, faces.corners))
             count = len(evaluated.data.vertices)
-            self._known.append(_Known(registry.key_of(obj), obj.session_uid, count))
+            known = _Known(registry.key_of(obj), obj.session_uid, count, met[obj])
+            self._known.append(known)
 
     def targets(self, depsgraph: bpy.types.Depsgraph) -> list[Points]:
         """Where the points of each stand at the depsgraph's frame (m, world space).
@@ -116,20 +133,23 @@ class Colliders:
         obj = registry.by_key(known.key, known.uid)
         if obj is None:
             raise Refusal(
-                f'the collider "{known.key[0]}" of "{self._cloth}" is gone: begin anew at the '
+                f'the collider "{known.key[0]}" of "{known.cloth}" is gone: begin anew at the '
                 "start frame"
             )
-        evaluated = self._evaluated(obj, depsgraph)
+        evaluated = self._evaluated(obj, depsgraph, known.cloth)
         count = len(evaluated.data.vertices)
         if count != known.vertex_count:
             raise Refusal(
-                f'the collider "{obj.name}" of "{self._cloth}" has {count} vertices at frame '
+                f'the collider "{obj.name}" of "{known.cloth}" has {count} vertices at frame '
                 f"{depsgraph.scene.frame_current} and {known.vertex_count} at the start: switch off "
                 "its modifiers that add or remove vertices in time, or its Collision modifier"
             )
         return _positions(evaluated)
 
-    def _evaluated(self, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bpy.types.Object:
+    @staticmethod
+    def _evaluated(
+        obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, cloth: str
+    ) -> bpy.types.Object:
         if sampling.is_evaluated(obj, depsgraph):
             return obj.evaluated_get(depsgraph)
         if depsgraph.mode == "RENDER":
@@ -137,7 +157,7 @@ class Colliders:
         else:
             cure = "enable it in viewports at every frame, or switch its Collision modifier off"
         raise Refusal(
-            f'the collider "{obj.name}" of "{self._cloth}" is not evaluated at frame '
+            f'the collider "{obj.name}" of "{cloth}" is not evaluated at frame '
             f"{depsgraph.scene.frame_current}: {cure}"
         )
 

@@ -19,6 +19,7 @@ import bpy
 
 from .. import native
 from ..core import drift, points, quantity, scene_json, settle
+from ..core.bake import Moment
 from ..core.live_frames import Action, Frame, LiveFrames
 from ..core.points import Points
 from ..core.progress import size
@@ -153,11 +154,11 @@ def _build(
     local = rest.positions(obj.data) if is_direct else sampling.targets(obj, depsgraph)
     matrix = sampling.object_matrix(obj, depsgraph)
     to_object = sampling.inverse(obj, matrix)
-    met = Colliders(obj, scene, depsgraph)
+    met = Colliders([obj], scene, depsgraph)
     world = points.transform(local, matrix, "d")
-    solver = simulation.maker(obj, description, world, colliders=met.arrays)()
+    solver = simulation.maker(description, [simulation.mesh(obj, world)], colliders=met.arrays)()
     limit = memory_limit()
-    if settle.run(solver, scene_json.settling(description), len(obj.data.vertices)):
+    if settle.run(solver, scene_json.settling(description), [len(obj.data.vertices)]):
         local = _read(solver, to_object, len(obj.data.vertices))
     first = Frame(local, solver.certificate(), _read_numbers(solver, obj))
     shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
@@ -165,7 +166,7 @@ def _build(
         uid=obj.session_uid,
         solver=solver,
         frames=LiveFrames(obj.boucle.frame_start, first, limit),
-        is_pinned=simulation.is_pinned(description),
+        is_pinned=simulation.is_pinned(description, 0),
         colliders=met,
         display=shown,
         basis=_basis(obj, scene),
@@ -218,13 +219,13 @@ def _step(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgrap
         return
     try:
         targets = session.colliders.targets(depsgraph)
-        pose = sampling.pose(obj, depsgraph, session.is_pinned, targets)
+        pose = sampling.pose(obj, depsgraph, session.is_pinned)
     except Refusal as refusal:
         session.waits = session.refusal = str(refusal)
         return
     session.refusal = ""
     try:
-        pose.aim(session.solver)
+        Moment([pose], targets).aim(session.solver)
         certificate = session.solver.advance()
         positions = _read(session.solver, pose.to_object, len(obj.data.vertices))
         session.frames.add(Frame(positions, certificate, _read_numbers(session.solver, obj)))
@@ -245,7 +246,7 @@ def _read(solver: Any, to_object: points.Affine, vertex_count: int) -> Points:
 
 def _read_numbers(solver: Any, obj: bpy.types.Object) -> Numbers:
     out = quantity.empty(vertex_attributes.wanted(obj), len(obj.data.vertices))
-    quantity.read(solver, out)
+    quantity.read(solver, 0, out)
     return out
 
 

@@ -49,7 +49,7 @@ def _compute(obj: bpy.types.Object, description: dict, fps: float) -> str:
     description["solver"]["allow_unstable"] = True
     try:
         world = points.transform(rest.positions(obj.data), matrix, "d")
-        return _words(simulation.maker(obj, description, world)(), fps)
+        return _words(simulation.maker(description, [simulation.mesh(obj, world)])(), fps)
     except native.FAILURES as error:
         return sentence_of(error)
 

@@ -1,8 +1,6 @@
-"""What the scene says of a cloth at a frame: where its pins and colliders go and how object space lies in the world."""
+"""What the scene says of a cloth at a frame: where its pins go and how object space lies in the world."""
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 import bpy
 
@@ -67,18 +65,13 @@ def targets(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Points:
     return mesh_arrays.read_vectors(attribute)[: 3 * count]
 
 
-def pose(
-    obj: bpy.types.Object,
-    depsgraph: bpy.types.Depsgraph,
-    with_pins: bool,
-    colliders: Sequence[Points] = (),
-) -> Pose:
-    """The pose of a cloth at the depsgraph's frame, where its colliders stand so (m, world space)."""
+def pose(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, with_pins: bool) -> Pose:
+    """The pose of a cloth at the depsgraph's frame."""
     matrix = object_matrix(obj, depsgraph)
     to_object = inverse(obj, matrix)
     if not with_pins:
-        return Pose(None, to_object, colliders)
-    return Pose(points.transform(targets(obj, depsgraph), matrix, "d"), to_object, colliders)
+        return Pose(None, to_object)
+    return Pose(points.transform(targets(obj, depsgraph), matrix, "d"), to_object)
 
 
 def refuse_other_count(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:

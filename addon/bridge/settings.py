@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import bpy
@@ -63,11 +64,20 @@ def groups(obj: bpy.types.Object) -> Groups:
     return Groups(pins or [], wind, not_self or [], not_objects or [])
 
 
-def describe(obj: bpy.types.Object, scene: bpy.types.Scene, with_groups: bool) -> dict[str, Any]:
-    """The scene description of one cloth among its colliders; groups take long to read and may be left out."""
+def describe(
+    obj: bpy.types.Object,
+    scene: bpy.types.Scene,
+    with_groups: bool,
+    others: Sequence[bpy.types.Object] = (),
+) -> dict[str, Any]:
+    """The scene description of one cloth among its colliders; groups take long to read and may be left out.
+
+    Others are simulated with it: it meets them as cloths, not as colliders.
+    """
     found = groups(obj) if with_groups else Groups([], None)
-    things = [colliders.describe(thing) for thing in colliders.find(obj, scene)]
-    return scene_json.describe(obj.name, values(obj), world(scene), found, things)
+    met = [thing for thing in colliders.find(obj, scene) if thing not in others]
+    things = [colliders.describe(thing) for thing in met]
+    return scene_json.describe(obj.name, values(obj), world(scene), found, things, bool(others))
 
 
 def record(obj: bpy.types.Object, description: dict[str, Any]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""A solver for one cloth, from Blender's data."""
+"""A solver for cloths, from Blender's data."""
 
 from __future__ import annotations
 
@@ -15,27 +15,29 @@ from .colliders import Arrays
 
 
 def maker(
-    obj: bpy.types.Object,
     description: dict[str, Any],
-    rest_world: Points,
+    meshes: Sequence[Arrays],
     threads: int = 0,
     colliders: Sequence[Arrays] = (),
 ) -> Callable[[], Any]:
     """A function that builds the simulation; it holds no Blender data and may run on any thread.
 
     Args:
-        obj: The cloth.
-        description: Its scene description.
-        rest_world: Rest positions (m, world space), float64, flat.
+        description: The scene description.
+        meshes: The rest meshes of its cloths, in its order.
         threads: 0 takes every core.
-        colliders: The meshes of the description's colliders, in its order.
+        colliders: The meshes of its colliders, in its order.
     """
-    faces = mesh_arrays.topology(obj.data)
     text = scene_json.encode(description)
-    mesh = (rest_world, faces.starts, faces.corners)
-    return lambda: native.simulation(text, [mesh], threads, colliders)
+    return lambda: native.simulation(text, meshes, threads, colliders)
 
 
-def is_pinned(description: dict[str, Any]) -> bool:
-    """Whether anything holds the cloth."""
-    return bool(description["cloth"][0].get("pins"))
+def mesh(obj: bpy.types.Object, rest_world: Points) -> Arrays:
+    """The mesh of a cloth, at rest at these positions (m, world space), float64, flat."""
+    faces = mesh_arrays.topology(obj.data)
+    return rest_world, faces.starts, faces.corners
+
+
+def is_pinned(description: dict[str, Any], cloth: int) -> bool:
+    """Whether anything holds a cloth."""
+    return bool(description["cloth"][cloth].get("pins"))

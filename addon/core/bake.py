@@ -10,32 +10,26 @@ thread, when it asks for the next step. A window and a script so pull the same g
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple, Protocol
 
-from . import checkpoint_file, points, quantity, report, vertex_file
-from .cache_paths import CacheFiles
-from .pc2 import Writer
+from . import points, quantity
 from .points import Affine, Points
 from .quantity import Numbers
-from .refusal import Refusal, cannot_write
-from .settle import Settle, Settling
-
-CHECKPOINT_SECONDS = 5.0
-"""A kill loses at most about this much work; writing a checkpoint takes milliseconds."""
+from .settle import Settle
+from .store import Sample, Stores
 
 
 class Simulation(Protocol):
-    """What a bake needs of the solver: one cloth, number 0."""
+    """What a bake needs of the solver."""
 
     frame: int
 
     def set_pin_targets(self, cloth: int, targets: Points) -> None: ...
     def set_collider_targets(self, collider: int, targets: Points) -> None: ...
     def advance(self) -> dict[str, Any]: ...
-    def certificate(self) -> dict[str, Any]: ...
+    def certificate(self, cloth: int | None = None) -> dict[str, Any]: ...
     def set_positions(self, cloth: int, positions: Points) -> None: ...
     def read_positions(self, cloth: int, out: Points) -> None: ...
     def read_strain(self, cloth: int, out: Points) -> None: ...
@@ -46,32 +40,38 @@ class Simulation(Protocol):
 
 
 class Pose(NamedTuple):
-    """What the scene says of a frame: where pins and colliders go (m, world space) and world to object space."""
+    """What the scene says of a cloth at a frame: where its pins go (m, world space) and world to object space."""
 
     targets: Points | None
     """For all vertices; None without pins."""
     to_object: Affine
+
+    def aim(self, simulation: Simulation, cloth: int) -> None:
+        """Tell a simulation where the pins of a cloth go in the next frame."""
+        if self.targets is not None:
+            simulation.set_pin_targets(cloth, self.targets)
+
+
+class Moment(NamedTuple):
+    """What the scene says of a frame: the pose of every cloth, and where colliders go (m, world space)."""
+
+    poses: Sequence[Pose]
     colliders: Sequence[Points] = ()
 
     def aim(self, simulation: Simulation) -> None:
-        """Tell a simulation where pins and colliders go in the next frame."""
-        if self.targets is not None:
-            simulation.set_pin_targets(0, self.targets)
+        """Tell a simulation what goes where in the next frame."""
+        for cloth, pose in enumerate(self.poses):
+            pose.aim(simulation, cloth)
         for number, targets in enumerate(self.colliders):
             simulation.set_collider_targets(number, targets)
 
 
-class Plan(NamedTuple):
-    """What to bake: simulated from start to end, kept from first to end."""
+class Buffers(NamedTuple):
+    """What is read of a cloth after each frame."""
 
-    start: int
-    first: int
-    end: int
-    vertex_count: int
-    digest: str
-    keeps: tuple[str, ...] = ()
-    """Keys of the quantities that are kept beside the positions."""
-    settling: Settling = Settling()
+    world: Points
+    """Positions (m), world space, float64."""
+    numbers: Numbers
 
 
 class Step:
@@ -108,131 +108,10 @@ class Step:
         return value
 
 
-class Store:
-    """The files of one bake: samples, report and checkpoint."""
-
-    def __init__(
-        self, files: CacheFiles, plan: Plan, rows: report.Report, keeps_previous: bool = True
-    ) -> None:
-        """Nothing is written before `begin` or `resume`."""
-        self._keeps_previous = keeps_previous
-        self.files = files
-        self.plan = plan
-        self.rows = rows
-        self._writer: Writer | None = None
-        self._numbers: dict[str, vertex_file.Writer] = {}
-        self._saved_at = time.monotonic()
-        self.last_frame: int | None = None
-
-    @property
-    def sample_count(self) -> int:
-        """Frames in the file."""
-        return self._writer.sample_count if self._writer else 0
-
-    def begin(self) -> None:
-        """Start afresh: files of an earlier bake are set aside as the previous ones, or removed."""
-        try:
-            if self._keeps_previous:
-                set_aside(self.files)
-            else:
-                for path in self.files.existing():
-                    os.remove(path)
-        except OSError as error:
-            raise cannot_write(self.files.pc2, error) from error
-        self._writer = Writer.create(self.files.pc2, self.plan.vertex_count, self.plan.first)
-        for key in self.plan.keeps:
-            path = getattr(self.files, key)
-            self._numbers[key] = vertex_file.Writer.create(path, self.plan.vertex_count)
-
-    def resume(self, simulation: Simulation) -> bool:
-        """Take up the checkpoint; False if there is none.
-
-        Raises:
-            Refusal: The checkpoint is damaged or of another cloth.
-        """
-        checkpoint = checkpoint_file.read(self.files.checkpoint)
-        if checkpoint is None:
-            return False
-        if checkpoint.digest != self.plan.digest:
-            raise Refusal(
-                f'the checkpoint "{self.files.checkpoint}" is of other settings or another mesh: '
-                "undo the change or bake from the start"
-            )
-        simulation.restore(checkpoint.state)
-        self._writer = Writer.reopen(
-            self.files.pc2, self.plan.vertex_count, checkpoint.sample_count
-        )
-        self._resume_numbers(checkpoint.sample_count)
-        self.rows.keep_first(checkpoint.sample_count, report.read(self.files.report))
-        self.last_frame = checkpoint.frame
-        return True
-
-    def _resume_numbers(self, sample_count: int) -> None:
-        """Numbers that were not kept from the start cannot be made up for: what is there goes."""
-        for key in (one.key for one in quantity.ALL):
-            path, writer = getattr(self.files, key), None
-            if key in self.plan.keeps:
-                writer = vertex_file.Writer.reopen(path, self.plan.vertex_count, sample_count)
-            if writer is not None:
-                self._numbers[key] = writer
-            elif os.path.isfile(path):
-                os.remove(path)
-
-    def write(
-        self, frame: int, positions: Points, numbers: Numbers, row: dict[str, Any], step: Step
-    ) -> None:
-        """Add a frame: positions (m), object space, float32, numbers at its vertices and its certificate."""
-        if frame >= self.plan.first:
-            for key, writer in self._numbers.items():
-                writer.append(numbers[key])
-            self._writer.append(positions)
-            self.rows.add(row, step.seconds)
-        self.last_frame = frame
-
-    def save(self, simulation: Simulation) -> None:
-        """Write report and checkpoint, if it is time."""
-        if time.monotonic() - self._saved_at >= CHECKPOINT_SECONDS:
-            self._save(simulation)
-
-    def finish(self, simulation: Simulation | None) -> None:
-        """Write report and checkpoint; no checkpoint of a state that the file does not end with."""
-        if self.last_frame is None:
-            return
-        if simulation is not None and simulation.frame == self.last_frame:
-            self._save(simulation)
-        else:
-            self.rows.write(self.files.report)
-
-    def _save(self, simulation: Simulation) -> None:
-        state = checkpoint_file.Checkpoint(
-            self.last_frame, self.sample_count, self.plan.digest, simulation.checkpoint()
-        )
-        self.rows.write(self.files.report)
-        checkpoint_file.write(self.files.checkpoint, state)
-        self._saved_at = time.monotonic()
-
-    def close(self) -> None:
-        """Close the files."""
-        for writer in (self._writer, *self._numbers.values()):
-            if writer:
-                writer.close()
-
-
-def set_aside(files: CacheFiles) -> None:
-    """Keep the files of an earlier bake under the name `previous`."""
-    if not os.path.isfile(files.pc2):
-        return
-    for path, kept in zip(files, files.previous, strict=True):
-        if os.path.isfile(path):
-            os.replace(path, kept)
-        elif os.path.isfile(kept):
-            os.remove(kept)
-
-
 def bake(
     simulation: Simulation,
-    store: Store,
-    pose_at: Callable[[int], Pose],
+    stores: Stores,
+    moment_at: Callable[[int], Moment],
     resume: bool,
     fatal: type[Exception],
 ) -> Iterator[Step]:
@@ -240,42 +119,46 @@ def bake(
 
     Args:
         simulation: At rest at the plan's start, or before it by the frames of settling; left at the last frame reached.
-        store: Receives every frame; closed at the end, whatever happens.
-        pose_at: Brings the scene to a frame and reads it; called between steps.
-        resume: Go on from the store's checkpoint if there is one.
+        stores: Receive every frame, one for each cloth in their order; closed at the end, whatever happens.
+        moment_at: Brings the scene to a frame and reads it; called between steps.
+        resume: Go on from the stores' checkpoint if there is one.
         fatal: The error after which the simulation must not be touched again.
 
     Raises:
         Refusal: Resume is not possible, or a file cannot be written; earlier frames stay.
         DivergedError: A position left the finite numbers; earlier frames stay.
         UnstableError: The next frame would not be stable with these settings; earlier frames stay.
+        InterruptionError: The step under way was interrupted; earlier frames stay.
     """
-    plan = store.plan
-    world = points.empty("d", 3 * plan.vertex_count)
-    numbers = quantity.empty(plan.keeps, plan.vertex_count)
-    pending: tuple[Step, Pose] | None = None
+    plan = stores.plan
+    buffers = [_buffers(store.plan.vertex_count, store.plan.keeps) for store in stores.each]
+    pending: tuple[Step, Moment] | None = None
     usable = True
 
-    def commit(step: Step, pose: Pose) -> None:
-        certificate = step.result()
-        positions = points.transform(world, pose.to_object, "f")
-        store.write(step.frame, positions, numbers, certificate, step)
+    def commit(step: Step, moment: Moment) -> None:
+        samples = [
+            Sample(points.transform(read.world, pose.to_object, "f"), read.numbers, certificate)
+            for read, pose, certificate in zip(buffers, moment.poses, step.result(), strict=True)
+        ]
+        stores.write(step.frame, samples, step.seconds)
 
     try:
-        if not (resume and store.resume(simulation)):
-            yield from _settle(simulation, plan)
-            store.begin()
-            begin = Step(plan.start, lambda: _rest(simulation, world, numbers))
+        if not (resume and stores.resume(simulation)):
+            moment = moment_at(plan.start)
+            yield from _settle(simulation, stores, moment)
+            stores.begin()
+            begin = Step(plan.start, lambda: _read(simulation, simulation.certificate(), buffers))
             begin.run()
-            commit(begin, pose_at(plan.start))
+            commit(begin, moment)
+            stores.mark(simulation)
         for frame in range(simulation.frame + 1, plan.end + 1):
-            pose = pose_at(frame)
-            step = Step(frame, lambda pose=pose: _advance(simulation, pose, world, numbers))
-            pending = (step, pose)
+            moment = moment_at(frame)
+            step = Step(frame, lambda moment=moment: _advance(simulation, moment, buffers))
+            pending = (step, moment)
             yield step
             pending = None
-            commit(step, pose)
-            store.save(simulation)
+            commit(step, moment)
+            stores.save(simulation)
     except fatal:
         usable = False
         raise
@@ -283,32 +166,41 @@ def bake(
         try:
             if pending and pending[0].succeeded:
                 commit(*pending)
-            store.finish(simulation if usable else None)
+            stores.finish(simulation if usable else None)
         finally:
-            store.close()
+            stores.close()
 
 
-def _settle(simulation: Simulation, plan: Plan) -> Iterator[Step]:
+def _settle(simulation: Simulation, stores: Stores, start: Moment) -> Iterator[Step]:
     """A step for every frame of settling; nothing on disk is touched before they are done."""
-    settle = Settle(simulation, plan.settling, plan.vertex_count)
+    counts = [store.plan.vertex_count for store in stores.each]
+    settle = Settle(simulation, stores.plan.settling, counts)
+    if not settle.is_done:
+        start.aim(simulation)
     while not settle.is_done:
         step = Step(simulation.frame + 1, settle.advance)
         yield step
         step.result()
 
 
-def _rest(simulation: Simulation, world: Points, numbers: Numbers) -> dict[str, Any]:
-    _read(simulation, world, numbers)
-    return simulation.certificate()
+def _buffers(vertex_count: int, keeps: tuple[str, ...]) -> Buffers:
+    return Buffers(points.empty("d", 3 * vertex_count), quantity.empty(keeps, vertex_count))
 
 
-def _advance(simulation: Simulation, pose: Pose, world: Points, numbers: Numbers) -> dict[str, Any]:
-    pose.aim(simulation)
-    certificate = simulation.advance()
-    _read(simulation, world, numbers)
-    return certificate
+def _advance(
+    simulation: Simulation, moment: Moment, buffers: Sequence[Buffers]
+) -> list[dict[str, Any]]:
+    moment.aim(simulation)
+    return _read(simulation, simulation.advance(), buffers)
 
 
-def _read(simulation: Simulation, world: Points, numbers: Numbers) -> None:
-    simulation.read_positions(0, world)
-    quantity.read(simulation, numbers)
+def _read(
+    simulation: Simulation, certificate: dict[str, Any], buffers: Sequence[Buffers]
+) -> list[dict[str, Any]]:
+    """Fill the buffers and give the certificate of each cloth; `certificate` is that of all."""
+    for cloth, read in enumerate(buffers):
+        simulation.read_positions(cloth, read.world)
+        quantity.read(simulation, cloth, read.numbers)
+    if len(buffers) == 1:
+        return [certificate]
+    return [simulation.certificate(cloth) for cloth in range(len(buffers))]

@@ -1,7 +1,8 @@
 """The checkpoint beside a PC2: from it a stopped bake goes on, bit-equal to one that never stopped.
 
-Layout: a magic line, one line of JSON (frame, sample count, digest of the scene, length), then the solver's own bytes, which
-carry their own checksum.
+Layout: a magic line, one line of JSON (frame, sample count, digest of the scene, length, the bake and its cloths), then the
+solver's own bytes, which carry their own checksum. Of several cloths that are baked together the first one's file holds the
+state of all, and the others' hold no bytes.
 """
 
 from __future__ import annotations
@@ -22,6 +23,10 @@ class Checkpoint(NamedTuple):
     sample_count: int
     digest: str
     state: bytes
+    bake: str = ""
+    """Identity of the bake."""
+    cloths: tuple[str, ...] = ()
+    """Names of its cloths."""
 
 
 def write(path: str, checkpoint: Checkpoint) -> None:
@@ -31,6 +36,8 @@ def write(path: str, checkpoint: Checkpoint) -> None:
         "samples": checkpoint.sample_count,
         "digest": checkpoint.digest,
         "length": len(checkpoint.state),
+        "bake": checkpoint.bake,
+        "cloths": checkpoint.cloths,
     }
     whole_file.replace(path, _MAGIC + json.dumps(head).encode() + b"\n" + checkpoint.state)
 
@@ -44,7 +51,7 @@ def read(path: str) -> Checkpoint | None:
     try:
         with open(path, "rb") as file:
             magic = file.readline(len(_MAGIC))
-            head_line = file.readline(4096)
+            head_line = file.readline(1 << 20)
             state = file.read()
     except FileNotFoundError:
         return None
@@ -56,6 +63,8 @@ def read(path: str) -> Checkpoint | None:
         head = json.loads(head_line)
         if head["length"] != len(state):
             raise ValueError(head)
-        return Checkpoint(int(head["frame"]), int(head["samples"]), str(head["digest"]), state)
+        numbers = int(head["frame"]), int(head["samples"])
+        cloths = tuple(map(str, head["cloths"]))
+        return Checkpoint(*numbers, str(head["digest"]), state, str(head["bake"]), cloths)
     except (ValueError, KeyError, TypeError) as error:
         raise Refusal(f'the checkpoint "{path}" is damaged: bake from the start') from error

@@ -35,8 +35,8 @@ def empty(keys: tuple[str, ...], vertex_count: int) -> dict[str, Points]:
     return {key: points.empty("f", vertex_count) for key in keys}
 
 
-def read(simulation: Any, out: Numbers) -> None:
-    """Fill the buffers from a simulation of one cloth."""
+def read(simulation: Any, cloth: int, out: Numbers) -> None:
+    """Fill the buffers with the numbers of a cloth of a simulation."""
     for quantity in ALL:
         if quantity.key in out:
-            getattr(simulation, quantity.reader)(0, out[quantity.key])
+            getattr(simulation, quantity.reader)(cloth, out[quantity.key])

@@ -14,6 +14,9 @@ from . import whole_file
 _LARGEST = frozenset({"frame", "substeps", "max_strain", "p99_strain", "max_shear_strain"})
 """Parts of a certificate of which several cloths have the largest, not the sum."""
 
+_SHARED = frozenset({"seconds", "substeps", "iterations", "intersections", "clipped", "contacts"})
+"""Parts that every cloth of a simulation has in common: they count once."""
+
 
 _MOST_NAMED = 8
 """How many overstretched edges a row names."""
@@ -48,7 +51,7 @@ class Report:
 
 
 def joined(reports: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """One report of several cloths, each simulated by itself.
+    """One report of several cloths, simulated one by one or together.
 
     A frame's row holds the largest strain, the worst edges, substeps of the cloth that took most, and sums of everything else
     (of intersections: over the cloths that collide); its hash is a 64-bit BLAKE2b digest of the cloths' hashes, in order. The
@@ -58,9 +61,12 @@ def joined(reports: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
         return dict(reports[0])
     rows: dict[int, list[Mapping[str, Any]]] = {}
     for report in reports:
+        is_first = report["cloths"][0]["name"] == report.get("together", [""])[0]
+        left_out = _SHARED if "together" in report and not is_first else frozenset()
         for row in report["frames"]:
-            rows.setdefault(row["frame"], []).append(row)
-    head = {key: value for key, value in reports[0].items() if key != "bake"}
+            own = {key: row[key] for key in row if key not in left_out}
+            rows.setdefault(row["frame"], []).append(own)
+    head = {key: value for key, value in reports[0].items() if key not in {"bake", "together"}}
     cloths = [cloth for report in reports for cloth in report["cloths"]]
     return _whole(head, cloths, [_joined_row(rows[frame]) for frame in sorted(rows)])
 
@@ -80,7 +86,7 @@ def _whole(
 def _joined_row(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     out: dict[str, Any] = {}
     for key in dict.fromkeys(key for row in rows for key in row):
-        values = [row.get(key) for row in rows]
+        values = [row[key] for row in rows if key in row]
         if key == "overstretched":
             out[key] = _worst([edge for edges in values for edge in edges or ()])
         elif key == "overstretched_count":

@@ -56,8 +56,9 @@ def describe(
     world: World,
     groups: Groups,
     colliders: Sequence[CollisionObject] = (),
+    meets_cloths: bool = False,
 ) -> dict[str, Any]:
-    """The scene of one cloth among colliders, without any mesh."""
+    """The scene of one cloth among colliders, and perhaps other cloths, without any mesh."""
     frames = [int(values["frame_start"]), int(values["frame_end"])]
     if frames[1] < frames[0]:
         raise Refusal(
@@ -70,7 +71,7 @@ def describe(
             "fps": world.fps,
             "gravity": [decimal(value) for value in world.gravity],
         },
-        "cloth": [_cloth(name, values, groups, bool(colliders))],
+        "cloth": [_cloth(name, values, groups, bool(colliders) or meets_cloths)],
         "solver": _solver(name, values),
     }
     if values.get("settle_frames"):

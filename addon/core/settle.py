@@ -6,6 +6,7 @@ become motion, so that few swings are needed (kinetic damping, after Cundall 197
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from . import points
@@ -21,12 +22,13 @@ class Settling(NamedTuple):
 class Settle:
     """A simulation that begins so many frames before the start frame, on its way there."""
 
-    def __init__(self, simulation: Any, settling: Settling, vertex_count: int) -> None:
-        """Nothing moves before `advance`."""
+    def __init__(self, simulation: Any, settling: Settling, vertex_counts: Sequence[int]) -> None:
+        """Nothing moves before `advance`; the counts are those of the cloths."""
         self._simulation = simulation
         self._left = settling.frames
         self._energy = 0.0
-        self._positions = points.empty("d", 3 * vertex_count) if settling.damped else None
+        self._damped = settling.damped
+        self._positions = [points.empty("d", 3 * count) for count in vertex_counts]
 
     @property
     def is_done(self) -> bool:
@@ -37,18 +39,19 @@ class Settle:
         """Simulate one frame; pins and colliders stay where they are."""
         energy = self._simulation.advance()["kinetic_energy"]
         self._left -= 1
-        if self._positions is None:
+        if not self._damped:
             return
         if energy < self._energy or self.is_done:
-            self._simulation.read_positions(0, self._positions)
-            self._simulation.set_positions(0, self._positions)
+            for cloth, positions in enumerate(self._positions):
+                self._simulation.read_positions(cloth, positions)
+                self._simulation.set_positions(cloth, positions)
             energy = 0.0
         self._energy = energy
 
 
-def run(simulation: Any, settling: Settling, vertex_count: int) -> bool:
+def run(simulation: Any, settling: Settling, vertex_counts: Sequence[int]) -> bool:
     """Bring a simulation to its start frame at once; whether the cloth has moved."""
-    settle = Settle(simulation, settling, vertex_count)
+    settle = Settle(simulation, settling, vertex_counts)
     while not settle.is_done:
         settle.advance()
     return settling.frames > 0

@@ -12,20 +12,21 @@ from bpy.types import Context, Event, Operator, Timer
 
 from .. import native
 from .._identifiers import Operators
-from ..bridge import runtime
+from ..bridge import runtime, together
 from ..bridge.bake import Bake, Options, outcome
 from ..bridge.worker import Worker
 from ..core.bake import Step
+from ..core.refusal import Refusal
 from .polling import can_simulate, cloths_of, is_free
 
 _TICK = 0.02
 """Seconds between two looks at the worker."""
-_PATIENCE = 0.1
+_PATIENCE = 0.05
 """Seconds that one look may take: short frames are baked several at a look."""
 
 
 class _Baking:
-    """What Bake and Bake All share: pulling the steps of one cloth after another."""
+    """What Bake and Bake All share: pulling the steps of one bake after another."""
 
     resume: BoolProperty(
         name="Resume",
@@ -34,31 +35,49 @@ class _Baking:
         options={"SKIP_SAVE"},
     )
 
-    def cloths(self, context: Context) -> list[bpy.types.Object]:
-        """What to bake."""
+    def groups(self, context: Context) -> tuple[list[list[bpy.types.Object]], list[str]]:
+        """What to bake: cloths that are baked together, and what there is to say about it.
+
+        Raises:
+            Refusal: A cloth that belongs to it is gone.
+        """
         raise NotImplementedError
 
     def invoke(self, context: Context, _event: Event) -> set[str]:
         """Bake beside a living window."""
         if bpy.app.background or context.window is None:
             return self.execute(context)
-        self._begin(context)
+        try:
+            self._begin(context)
+        except Refusal as refusal:
+            self.report({"ERROR"}, str(refusal))
+            return {"CANCELLED"}
         return {"RUNNING_MODAL"}
 
     def _begin(self, context: Context) -> None:
-        self._bakes = self._make_bakes(context)
+        self._bakes, notes = self._make_bakes(context)
+        self._count = len(self._bakes)
+        self._is_stopping = False
         self._current: Bake | None = None
         self._steps: Iterator[Step] | None = None
         self._step: Step | None = None
         self._worker = Worker()
-        self._messages: list[tuple[str, str]] = []
+        self._messages = [("WARNING", note) for note in notes]
+        context.window_manager.progress_begin(0.0, 1.0)
         self._timer: Timer = context.window_manager.event_timer_add(_TICK, window=context.window)
         context.window_manager.modal_handler_add(self)
 
     def execute(self, context: Context) -> set[str]:
         """Bake to the end without interaction, for scripts and background Blender."""
         failed = False
-        for bake in self._make_bakes(context):
+        try:
+            bakes, notes = self._make_bakes(context)
+        except Refusal as refusal:
+            self.report({"ERROR"}, str(refusal))
+            return {"CANCELLED"}
+        for note in notes:
+            self.report({"WARNING"}, note)
+        for bake in bakes:
             error = None
             try:
                 for step in bake.steps():
@@ -72,22 +91,27 @@ class _Baking:
     def modal(self, context: Context, event: Event) -> set[str]:
         """Pull steps at every tick; Esc stops and keeps. Everything else waits."""
         if event.type == "ESC" and event.value == "PRESS":
-            self._stop()
-            return self._end(context)
-        if event.type != "TIMER":
+            self._ask_to_stop(context)
+        elif event.type != "TIMER":
             return {"RUNNING_MODAL"}
-        if self._pull(context):
+        if self._is_stopping:
+            if not self._worker.is_done(_PATIENCE):
+                return {"RUNNING_MODAL"}
+            self._stop()
+        elif self._pull(context):
             return {"RUNNING_MODAL"}
         return self._end(context)
 
     def cancel(self, context: Context) -> None:
         """Blender ends the operator: a file is loaded, or the window closes."""
+        self._ask_to_stop(context)
         self._stop()
         self._end(context)
 
-    def _make_bakes(self, context: Context) -> list[Bake]:
+    def _make_bakes(self, context: Context) -> tuple[list[Bake], list[str]]:
         options = Options(resume=self.resume)
-        return [Bake(obj, context.scene, options) for obj in self.cloths(context)]
+        groups, notes = self.groups(context)
+        return [Bake(cloths, context.scene, options) for cloths in groups], notes
 
     def _pull(self, context: Context) -> bool:
         """Do what can be done in a moment; False at the end of the last bake."""
@@ -97,7 +121,7 @@ class _Baking:
                 return True
             if not self._next_step():
                 return False
-            context.workspace.status_text_set(self._current.progress(self._step))
+            self._tell(context)
             self._worker.begin(self._step)
             if time.monotonic() > until:
                 return True
@@ -122,6 +146,21 @@ class _Baking:
             )
             self._steps = None
 
+    def _tell(self, context: Context) -> None:
+        """Show how far it is: in the status bar, and at the pointer."""
+        context.workspace.status_text_set(self._current.progress(self._step))
+        done = self._count - len(self._bakes) - 1
+        part = (done + self._current.part(self._step)) / self._count
+        context.window_manager.progress_update(part)
+
+    def _ask_to_stop(self, context: Context) -> None:
+        """Interrupt the running step. A frame may take seconds, of which only one of its steps is waited for."""
+        self._is_stopping = True
+        if self._current is not None:
+            self._current.interrupt()
+            if context.workspace is not None:
+                context.workspace.status_text_set(f"{self._current.title}: stopping")
+
     def _stop(self) -> None:
         """Let the running step end, keep what is done and bake nothing more."""
         self._worker.end()
@@ -139,6 +178,7 @@ class _Baking:
     def _end(self, context: Context) -> set[str]:
         self._worker.end()
         context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
         if context.workspace is not None:
             context.workspace.status_text_set(None)
         kinds = {kind for kind, _ in self._messages}
@@ -151,14 +191,15 @@ def _keep(bake: Bake, error: BaseException | None) -> str:
     """The outcome as a sentence; a failure stays in the cloth's panel."""
     text = outcome(bake, error)
     if error is not None and not isinstance(error, GeneratorExit):
-        runtime.messages[bake.uid] = text
+        runtime.messages.update(dict.fromkeys(bake.uids, text))
     else:
-        runtime.messages.pop(bake.uid, None)
+        for uid in bake.uids:
+            runtime.messages.pop(uid, None)
     return text
 
 
 class BOUCLE_OT_bake(_Baking, Operator):
-    """Simulate the cloth over its frame range and keep the result on disk"""
+    """Simulate the cloth over its frame range and keep the result on disk; other cloths only count as colliders"""
 
     bl_idname = Operators.BAKE
     bl_label = "Bake"
@@ -169,13 +210,13 @@ class BOUCLE_OT_bake(_Baking, Operator):
         """Only a cloth of this file, and one bake at a time."""
         return can_simulate(cls, context)
 
-    def cloths(self, context: Context) -> list[bpy.types.Object]:
-        """The active cloth."""
-        return [context.object]
+    def groups(self, context: Context) -> tuple[list[list[bpy.types.Object]], list[str]]:
+        """The active cloth; resumed, with those that it was baked together with."""
+        return [together.resumed(context.object) if self.resume else [context.object]], []
 
 
 class BOUCLE_OT_bake_all(_Baking, Operator):
-    """Bake every Boucle cloth of the scene, one after another"""
+    """Bake every Boucle cloth of the scene: those that collide with each other together, others one after another"""
 
     bl_idname = Operators.BAKE_ALL
     bl_label = "Bake All"
@@ -189,9 +230,9 @@ class BOUCLE_OT_bake_all(_Baking, Operator):
             return False
         return is_free(cls)
 
-    def cloths(self, context: Context) -> list[bpy.types.Object]:
+    def groups(self, context: Context) -> tuple[list[list[bpy.types.Object]], list[str]]:
         """Every cloth of the scene."""
-        return cloths_of(context)
+        return together.groups(cloths_of(context), context.scene)
 
 
 CLASSES = (BOUCLE_OT_bake, BOUCLE_OT_bake_all)

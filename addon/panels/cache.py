@@ -44,6 +44,10 @@ class BOUCLE_PT_cache(PhysicsPanel, Panel):
             row.operator(Operators.RESTORE_BAKE)
         if settings.is_foreign:
             layout.operator(Operators.ADOPT_BAKE)
+        if settings.is_baked:
+            row = layout.row(align=True)
+            row.operator(Operators.EXPORT_USD)
+            row.operator(Operators.EXPORT_ALEMBIC)
         for line in settings.status.split("; "):
             draw_text(layout, line, context)
         if settings.certificate:

@@ -31,6 +31,11 @@ class UnstableError(BoucleError, ArithmeticError):
 class CacheError(BoucleError, OSError):
     """A result cannot be written or read (disk full, no permission). Earlier frames are kept."""
 
+class InterruptionError(BoucleError, RuntimeError):
+    """A frame was stopped by an Interrupter: the state is that of the frame before it."""
+
+    frame: int
+
 class InternalError(BoucleError, RuntimeError):
     """A fault of our own: a Rust panic, caught. The simulation must be thrown away."""
 
@@ -115,11 +120,21 @@ class Simulation:
         cloth, vertices, strain).
 
         Raises:
-            DivergedError, UnstableError: The state is that of the last good frame.
+            DivergedError, UnstableError, InterruptionError: The state is that of the last good frame.
         """
 
-    def certificate(self) -> dict[str, float | int | str | list[dict[str, object]] | None]:
-        """The certificate of the present state."""
+    def certificate(
+        self, cloth: int | None = None
+    ) -> dict[str, float | int | str | list[dict[str, object]] | None]:
+        """The certificate of the present state.
+
+        Args:
+            cloth: The number of the cloth whose strain, energies, hash and overstretched edges are told; all if None. The
+                other parts are always those of the whole simulation.
+        """
+
+    def interrupter(self) -> Interrupter:
+        """What stops this simulation from another thread."""
 
     def read_positions(self, cloth: int, out: Buffer) -> None:
         """Fill out, float32 or float64 (n, 3), with positions (m), world space."""
@@ -158,6 +173,13 @@ class Simulation:
         Raises:
             SceneError: The checkpoint is damaged or of another scene.
         """
+
+@final
+class Interrupter:
+    """Stops a simulation in the middle of a frame, from any thread."""
+
+    def interrupt(self) -> None:
+        """Let `advance` end at its next substep by raising InterruptionError; if none runs, the next one at once."""
 
 def bake(
     scene: str,

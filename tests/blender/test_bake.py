@@ -121,7 +121,7 @@ def stop_and_resume(folder):
     def pc2():
         return bpy.path.abspath(obj.modifiers["Boucle Cache"].filepath)
 
-    running = bake.Bake(obj, scene)
+    running = bake.Bake([obj], scene)
     steps = running.steps()
     for step in steps:
         worker.begin(step)

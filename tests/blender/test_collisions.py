@@ -149,7 +149,7 @@ def stop_on_a_moving_collider():
     for frame, height in ((1, 0.0), (12, 0.4), (24, -0.2)):
         floor.location.z = height
         floor.keyframe_insert("location", frame=frame)
-    bake = addon("bridge.bake").Bake(sheet, bpy.context.scene)
+    bake = addon("bridge.bake").Bake([sheet], bpy.context.scene)
     steps = bake.steps()
     for step in steps:
         step.run()
@@ -244,7 +244,7 @@ def who_collides():
     out.append(names())
     sheet.boucle.object_collision, sheet.boucle.collision_collection = True, None
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    known = addon("bridge.colliders").Colliders(sheet, scene, depsgraph)
+    known = addon("bridge.colliders").Colliders([sheet], scene, depsgraph)
     return [*out, len(known.targets(depsgraph))]
 
 
@@ -440,7 +440,7 @@ def lose_a_collider():
 
     sheet, floor = add_sheet(), add_collider()
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    known = addon("bridge.colliders").Colliders(sheet, bpy.context.scene, depsgraph)
+    known = addon("bridge.colliders").Colliders([sheet], bpy.context.scene, depsgraph)
     said = []
 
     def note():

@@ -7,6 +7,16 @@ class Manager:
     def __init__(self):
         self.timers = 0
         self.handlers = []
+        self.parts = []
+
+    def progress_begin(self, first, last):
+        assert (first, last) == (0.0, 1.0)
+
+    def progress_update(self, part):
+        self.parts.append(part)
+
+    def progress_end(self):
+        self.parts.append(None)
 
     def event_timer_add(self, _seconds, window):
         del window
@@ -55,8 +65,8 @@ def operator(context, cloths, resume=False):
             self.said = []
             self.resume = resume
 
-        def cloths(self, _context):
-            return cloths
+        def groups(self, _context):
+            return [[cloth] for cloth in cloths], []
 
         def report(self, kinds, text):
             self.said.append([*kinds, text])
@@ -83,6 +93,12 @@ def run_to_the_end(baking, context):
             return state, ticks
         assert baking.modal(context, Event("MOUSEMOVE")) == {"RUNNING_MODAL"}
         assert ticks < 10_000
+
+
+def press_esc(baking, context):
+    """Press Esc and wait for the end of the bake."""
+    state = baking.modal(context, Event("ESC"))
+    return state if state != {"RUNNING_MODAL"} else run_to_the_end(baking, context)[0]
 
 
 def bake_in_a_window():
@@ -123,6 +139,7 @@ def bake_in_a_window():
         "state": list(state),
         "said": baking.said,
         "texts": context.workspace.texts,
+        "parts": context.window_manager.parts,
         "timers": context.window_manager.timers,
         "same": windowed == shown_positions(one),
         "status": [one.boucle.status, two.boucle.status],
@@ -143,6 +160,9 @@ def test_a_window_bakes_beside_its_events_and_the_result_is_that_of_a_script(ble
     assert not any(result["polls"])
     assert result["timers"] == 0 and result["busy"] == []
     assert result["texts"][-1] is None
+    parts = result["parts"]
+    assert parts[-1] is None and parts[:-1] == sorted(parts[:-1])
+    assert parts[0] < 0.1 and 0.9 < parts[-2] <= 1.0
     assert any(
         "frame 30/40" in text and "Esc stops and keeps" in text for text in result["texts"][:-1]
     )
@@ -159,7 +179,7 @@ def stop_in_a_window():
     while baking._current is None or (baking._current.last_frame or 0) < 5:
         assert baking.modal(context, Event("TIMER")) == {"RUNNING_MODAL"}
     assert baking.modal(context, Event("ESC", "RELEASE")) == {"RUNNING_MODAL"}
-    state = baking.modal(context, Event("ESC"))
+    state = press_esc(baking, context)
     stopped = obj.boucle.status
     again = operator(context, [obj], resume=True)
     while again._current is None or (again._current.last_frame or 0) < 14:
@@ -194,6 +214,56 @@ def test_esc_stops_keeps_and_resume_goes_on(blender):
     assert result["never"].startswith("Not baked")
     assert result["timers"] == 0 and result["busy"] == []
     assert result["rest"] and result["frame"] == 1
+
+
+def stop_a_long_frame(folder):
+    import os
+    import time
+    from pathlib import Path
+
+    import bpy
+    from cloths import add_cloth
+
+    obj = add_cloth(end=6, columns=30, rows=30, integrator="symplectic_euler")
+    obj.boucle.substeps = 30
+    bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, "a.blend"))
+    context = window([obj])
+    baking = operator(context, [obj])
+    state, _ = run_to_the_end(baking, context)
+    whole = Path(bpy.path.abspath(obj.modifiers["Boucle Cache"].filepath)).read_bytes()
+    obj.boucle.substeps = 200_000  # a frame takes minutes
+    baking = operator(context, [obj])
+    longest, begun = 0.0, time.perf_counter()
+    while baking._current is None or baking._current._interrupter is None or not baking._steps:
+        baking.modal(context, Event("TIMER"))
+    for _ in range(10):
+        begin = time.perf_counter()
+        assert baking.modal(context, Event("TIMER")) == {"RUNNING_MODAL"}
+        longest = max(longest, time.perf_counter() - begin)
+    begun = time.perf_counter()
+    state = baking.modal(context, Event("ESC"))
+    answered, told = time.perf_counter() - begun, context.workspace.texts[-2:]
+    if state == {"RUNNING_MODAL"}:
+        state, _ = run_to_the_end(baking, context)
+    ended = time.perf_counter() - begun
+    status = obj.boucle.status
+    bpy.ops.boucle.restore_bake()
+    again = Path(bpy.path.abspath(obj.modifiers["Boucle Cache"].filepath)).read_bytes()
+    return {
+        "state": list(state), "answered": answered, "ended": ended, "longest": longest,
+        "told": told, "status": status, "said": baking.said, "kept": again == whole,
+    }  # fmt: skip
+
+
+def test_esc_is_answered_at_once_even_in_a_frame_of_minutes(new_blender):
+    result = new_blender.run(stop_a_long_frame, folder=new_blender.folder)
+    assert result["state"] == ["FINISHED"]
+    assert result["longest"] < 0.3 and result["answered"] < 0.3, "0.1 s where nothing else runs"
+    assert result["ended"] < 2.0
+    assert any("stopping" in (text or "") for text in result["told"])
+    assert result["status"].startswith("Partly baked: frames 1 to 1 of 6")
+    assert '"Cloth" was stopped; frames up to 1 are kept, Resume goes on' in result["said"][-1][1]
+    assert result["kept"]
 
 
 def lose_the_cloth():

@@ -6,9 +6,10 @@ from array import array
 import boucle_core
 import pytest
 from boucle_addon.core import bake, pc2, points, report, scene_json, vertex_file
-from boucle_addon.core.bake import Plan, Pose, Store
+from boucle_addon.core.bake import Moment, Pose
 from boucle_addon.core.cache_paths import files_of
 from boucle_addon.core.refusal import CacheRefusal, Refusal
+from boucle_addon.core.store import Plan, Store, Stores
 
 END = 12
 SIDE = 5
@@ -41,18 +42,18 @@ def solver(integrator="symplectic_euler", **springs):
 def store(folder, digest="d", first=1, keeps_previous=True, keeps=()):
     rows = report.Report("0.1.0", "", 1, {"name": "A"})
     plan = Plan(1, first, END, SIDE**2, digest, keeps)
-    return Store(files_of(str(folder / "a.pc2")), plan, rows, keeps_previous)
+    return Stores([Store(files_of(str(folder / "a.pc2")), plan, rows, keeps_previous)])
 
 
-def pose(frame):
+def moment(frame):
     """Pins that sway, in an object that is moved and scaled."""
     moved = points.transform(grid()[0], (1, 0, 0, 0.02 * frame, *points.IDENTITY[4:]), "d")
-    return Pose(moved, TO_OBJECT)
+    return Moment([Pose(moved, TO_OBJECT)])
 
 
 def pull(simulation, kept, steps=None, resume=False):
     """Bake, or stop after some steps; what the steps' frames were."""
-    running = bake.bake(simulation, kept, pose, resume, boucle_core.InternalError)
+    running = bake.bake(simulation, kept, moment, resume, boucle_core.InternalError)
     frames = []
     for step in running:
         step.run()
@@ -99,7 +100,7 @@ def test_stopped_after_any_step_it_goes_on_bit_equal(whole, tmp_path, steps):
 
 
 def test_a_step_that_was_asked_for_and_never_run_is_not_kept(tmp_path):
-    running = bake.bake(solver(), store(tmp_path), pose, False, boucle_core.InternalError)
+    running = bake.bake(solver(), store(tmp_path), moment, False, boucle_core.InternalError)
     next(running)
     running.close()
     assert pc2.read_header(str(tmp_path / "a.pc2")).sample_count == 1
@@ -204,7 +205,7 @@ def test_pins_and_colliders_are_told_where_they_go_before_each_frame(tmp_path):
     simulation = Aimed()
 
     def among(frame):
-        return pose(frame)._replace(colliders=[f"ball at {frame}", f"box at {frame}"])
+        return moment(frame)._replace(colliders=[f"ball at {frame}", f"box at {frame}"])
 
     for step in bake.bake(simulation, store(tmp_path), among, False, boucle_core.InternalError):
         step.run()

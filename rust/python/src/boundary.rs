@@ -18,6 +18,7 @@ struct Exceptions {
     diverged: Py<PyType>,
     unstable: Py<PyType>,
     cache: Py<PyType>,
+    interrupted: Py<PyType>,
     internal: Py<PyType>,
 }
 
@@ -46,6 +47,7 @@ pub(crate) fn raise(py: Python<'_>, error: &Error) -> PyErr {
         Error::Diverged { .. } => &exceptions.diverged,
         Error::Unstable { .. } => &exceptions.unstable,
         Error::Cache(_) => &exceptions.cache,
+        Error::Interrupted { .. } => &exceptions.interrupted,
         _ => &exceptions.scene,
     };
     let exception = PyErr::from_type(kind.bind(py).clone(), error.to_string());
@@ -54,7 +56,9 @@ pub(crate) fn raise(py: Python<'_>, error: &Error) -> PyErr {
         Error::Diverged { frame, vertex, .. } => {
             value.setattr("frame", frame).and_then(|()| value.setattr("vertex", vertex))
         }
-        Error::Unstable { frame, .. } => value.setattr("frame", frame),
+        Error::Unstable { frame, .. } | Error::Interrupted { frame } => {
+            value.setattr("frame", frame)
+        }
         _ => Ok(()),
     };
     told.err().unwrap_or(exception)
@@ -104,6 +108,11 @@ pub(crate) fn add_exceptions(module: &Bound<'_, PyModule>) -> PyResult<()> {
             "CacheError",
             py.get_type::<PyOSError>(),
             "A result cannot be written or read (disk full, no permission). Earlier frames are kept.",
+        )?,
+        interrupted: add(
+            "InterruptionError",
+            py.get_type::<PyRuntimeError>(),
+            "A frame was stopped by an Interrupter: the state is that of the frame before it.",
         )?,
         internal: add(
             "InternalError",

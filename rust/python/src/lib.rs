@@ -4,6 +4,7 @@
 //! - `buffers`: arrays in and out, by the buffer protocol
 //! - `meshes`: meshes of cloths and colliders out of such arrays
 //! - `simulation`: the class `Simulation`
+//! - `interrupter`: the class `Interrupter`
 //! - `bake`: the function `bake`
 //! - `geometry`: distances, collisions and intersections of many features at once
 //!
@@ -15,6 +16,7 @@ mod bake;
 mod boundary;
 mod buffers;
 mod geometry;
+mod interrupter;
 mod meshes;
 mod simulation;
 
@@ -26,6 +28,7 @@ fn boucle_core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", boucle_scene::VERSION)?;
     boundary::add_exceptions(module)?;
     module.add_class::<simulation::Simulation>()?;
+    module.add_class::<interrupter::Interrupter>()?;
     module.add_function(wrap_pyfunction!(bake::bake, module)?)?;
     module.add_function(wrap_pyfunction!(geometry::point_triangle_distance, module)?)?;
     module.add_function(wrap_pyfunction!(geometry::edge_edge_distance, module)?)?;

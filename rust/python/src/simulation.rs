@@ -2,12 +2,13 @@
 
 use boucle_scene::report::FrameRow;
 use boucle_scene::{Assembly, Error, Scene};
-use boucle_solver::{Certificate, Cloth, Collider};
+use boucle_solver::{Cloth, Collider};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
 use crate::boundary::{compute, raise, raise_internal, refuse};
 use crate::buffers;
+use crate::interrupter::Interrupter;
 use crate::meshes::{self, MeshArrays};
 
 /// The bytes of a cloth's springs: ends, kinds, rest lengths, stiffnesses, dampings.
@@ -164,11 +165,36 @@ impl Simulation {
     }
 
     fn advance<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.row(py, Assembly::advance)
+        let row = self.with(py, |assembly| {
+            let row = FrameRow::new(&assembly.advance()?, None);
+            Ok(row.naming_overstretched(&assembly.simulation))
+        })?;
+        parse_json(py, &row.to_json())
     }
 
-    fn certificate<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.row(py, |assembly| Ok(assembly.simulation.certificate()))
+    #[pyo3(signature = (cloth = None))]
+    fn certificate<'py>(
+        &mut self,
+        py: Python<'py>,
+        cloth: Option<i64>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let cloths = match cloth {
+            Some(cloth) => {
+                let index = self.cloth(py, cloth)?.0;
+                index..index + 1
+            }
+            None => 0..self.assembly(py)?.simulation.cloth_count(),
+        };
+        let row = self.with(py, |assembly| {
+            let simulation = &assembly.simulation;
+            let row = FrameRow::new(&simulation.certificate_of(cloths.clone()), None);
+            Ok(row.naming_overstretched_of(simulation, cloths))
+        })?;
+        parse_json(py, &row.to_json())
+    }
+
+    fn interrupter(&self, py: Python<'_>) -> PyResult<Interrupter> {
+        Ok(Interrupter(self.assembly(py)?.simulation.interrupter()))
     }
 
     fn read_positions(
@@ -269,19 +295,6 @@ impl Simulation {
             self.assembly = taken;
         }
         outcome
-    }
-
-    /// The certificate that some work gives, as a row of the report.
-    fn row<'py>(
-        &mut self,
-        py: Python<'py>,
-        work: impl Send + FnOnce(&mut Assembly) -> Result<Certificate, Error>,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let row = self.with(py, |assembly| {
-            let row = FrameRow::new(&work(assembly)?, None);
-            Ok(row.naming_overstretched(&assembly.simulation))
-        })?;
-        parse_json(py, &row.to_json())
     }
 
     fn assembly(&self, py: Python<'_>) -> PyResult<&Assembly> {

@@ -4,7 +4,7 @@ use boucle_geometry::{Aabb, Mesh, Vector};
 use boucle_solver::{Certificate, Cloth, Region, Settings, Simulation, Wind};
 
 use crate::collider::{ColliderTrack, RestCollider};
-use crate::description::{Choice, ClothDescription, Force, Grid, Scene};
+use crate::description::{Choice, ClothDescription, Force, Grid, RegionDescription, Scene};
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::pins::PinTrack;
@@ -66,7 +66,7 @@ impl Assembly {
             .unzip();
         let forces = scene.force.iter().enumerate();
         let winds = forces
-            .map(|(index, force)| wind(force, &format!("force.{index}")))
+            .map(|(index, force)| wind(force, &scene.cloth, &format!("force.{index}")))
             .collect::<Result<_>>()?;
         let mut simulation =
             Simulation::with_colliders(cloths, colliders, winds, settings(scene, threads))
@@ -141,9 +141,10 @@ fn cloth(
 ) -> Result<Cloth> {
     let colliders: Vec<&str> =
         scene.collider.iter().map(|collider| collider.name.as_str()).collect();
+    let cloths: Vec<&str> = scene.cloth.iter().map(|cloth| cloth.name.as_str()).collect();
     let collision = description.collision.collision(
         &scene.collision,
-        &colliders,
+        [&colliders, &cloths],
         rest.positions.len(),
         &format!("{at}.collision"),
     )?;
@@ -157,17 +158,28 @@ fn cloth(
     Ok(Cloth { collision, ..cloth })
 }
 
-fn wind(force: &Force, at: &str) -> Result<Wind> {
+fn wind(force: &Force, cloths: &[ClothDescription], at: &str) -> Result<Wind> {
     let region = match &force.region {
         None => Region::Everywhere,
         Some(region) => match &region.r#box {
             Some([min, max]) => {
                 Region::Box(Aabb { min: Vector::from(*min), max: Vector::from(*max) })
             }
-            None => Region::Vertices(region.vertices.clone().unwrap_or_default()),
+            None => region_of_vertices(region, cloths),
         },
     };
     Ok(Wind { velocity: Vector::from(force.velocity), law: force.law(at)?, region })
+}
+
+fn region_of_vertices(region: &RegionDescription, cloths: &[ClothDescription]) -> Region {
+    let vertices = region.vertices.clone();
+    match &region.cloth {
+        None => Region::Vertices(vertices.unwrap_or_default()),
+        Some(name) => {
+            let number = cloths.iter().position(|cloth| cloth.name == *name);
+            Region::Cloth(number.unwrap_or(cloths.len()) as u32, vertices)
+        }
+    }
 }
 
 /// The solver's refusals of a step, told with the table they come from.

@@ -28,6 +28,11 @@ pub enum Error {
         /// Why, and what would be accepted.
         reason: String,
     },
+    /// A frame was stopped from outside; the frames before it are kept.
+    Interrupted {
+        /// The frame that was not reached.
+        frame: i32,
+    },
     /// A result cannot be written or read; the frames before it are kept.
     Cache(String),
 }
@@ -57,13 +62,14 @@ impl Error {
         }
     }
 
-    /// The exit code of a bake that ends so: 2 wrong input, 3 diverged or about to, 4 cache.
+    /// The exit code of a bake that ends so: 2 wrong input, 3 diverged or about to, 4 cache, 130 stopped.
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input(_) => 2,
             Self::Diverged { .. } | Self::Unstable { .. } => 3,
             Self::Cache(_) => 4,
+            Self::Interrupted { .. } => 130,
         }
     }
 }
@@ -75,6 +81,7 @@ impl fmt::Display for Error {
             Self::Diverged { frame, vertex, cloth } => f.write_str(&one_line(&format!(
                 "diverged at frame {frame}, vertex {vertex} of cloth \"{cloth}\""
             ))),
+            Self::Interrupted { frame } => write!(f, "frame {frame} was interrupted"),
             Self::Unstable { frame, reason } => {
                 f.write_str(&one_line(&format!("frame {frame} cannot be simulated: {reason}")))
             }
@@ -91,6 +98,7 @@ impl From<boucle_solver::Error> for Error {
             boucle_solver::Error::Diverged { frame, vertex, cloth } => {
                 Self::Diverged { frame, vertex, cloth }
             }
+            boucle_solver::Error::Interrupted { frame } => Self::Interrupted { frame },
             other => Self::Input(other.to_string()),
         }
     }

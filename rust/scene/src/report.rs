@@ -3,6 +3,7 @@
 //! Strict JSON (a number that is not finite is null), replaced whole after every frame. The rows are kept as text, so that a
 //! long bake does not write its numbers again and again, and a resumed one keeps them to the letter.
 
+use std::ops::Range;
 use std::path::Path;
 
 use boucle_solver::{Certificate, Cloth, Simulation};
@@ -117,8 +118,18 @@ impl FrameRow {
 
     /// The same row with the edges that are overstretched at the state which the certificate is of.
     #[must_use]
-    pub fn naming_overstretched(mut self, simulation: &Simulation) -> Self {
-        for index in 0..simulation.cloth_count() {
+    pub fn naming_overstretched(self, simulation: &Simulation) -> Self {
+        self.naming_overstretched_of(simulation, 0..simulation.cloth_count())
+    }
+
+    /// The same of some cloths, of which the certificate is.
+    #[must_use]
+    pub fn naming_overstretched_of(
+        mut self,
+        simulation: &Simulation,
+        cloths: Range<usize>,
+    ) -> Self {
+        for index in cloths {
             let cloth = simulation.cloth(index);
             // Mostly there are none, which the certificate knows.
             if self.max_strain <= cloth.material.deformation_rate {

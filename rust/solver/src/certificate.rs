@@ -48,7 +48,7 @@ pub(crate) fn certify<'a>(
 ) -> Certificate {
     let mut stretch = strains(cloths.clone(), state, SpringKind::Stretch);
     let shear = strains(cloths.clone(), state, SpringKind::Shear);
-    let (kinetic_energy, potential_energy) = energies(cloths, state, gravity);
+    let (kinetic_energy, potential_energy) = energies(cloths.clone(), state, gravity);
     Certificate {
         frame,
         substeps,
@@ -61,7 +61,7 @@ pub(crate) fn certify<'a>(
         contacts: 0,
         kinetic_energy,
         potential_energy,
-        hash: hash(state),
+        hash: hash(cloths, state),
     }
 }
 
@@ -114,11 +114,13 @@ fn energies<'a>(
     (kinetic, potential)
 }
 
-fn hash(state: &State) -> u64 {
+fn hash<'a>(cloths: impl Iterator<Item = Placed<'a>>, state: &State) -> u64 {
     let mut hasher = Xxh3::new();
-    for particle in 0..state.len() {
-        for axis in &state.position.0 {
-            hasher.update(&axis[particle].to_le_bytes());
+    for (cloth, base) in cloths {
+        for particle in base as usize..base as usize + cloth.positions.len() {
+            for axis in &state.position.0 {
+                hasher.update(&axis[particle].to_le_bytes());
+            }
         }
     }
     hasher.digest()

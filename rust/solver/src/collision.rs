@@ -17,6 +17,8 @@ pub struct Collision {
     pub excluded_from_colliders: Vec<u32>,
     /// The colliders that it meets, by number; all if `None`.
     pub colliders: Option<Vec<u32>>,
+    /// The other cloths that it meets, by number, if they meet it, too; all if `None`.
+    pub cloths: Option<Vec<u32>>,
 }
 
 impl Default for Collision {
@@ -28,6 +30,7 @@ impl Default for Collision {
             excluded_from_self: Vec::new(),
             excluded_from_colliders: Vec::new(),
             colliders: None,
+            cloths: None,
         }
     }
 }
@@ -37,8 +40,13 @@ pub(crate) const THICKEST: f64 = 100.0;
 const ROUGHEST: f64 = 100.0;
 
 impl Collision {
-    /// Refuses values outside their domains, for a cloth of a name and so many vertices among so many colliders.
-    pub(crate) fn check(&self, cloth: &str, vertices: usize, colliders: usize) -> Result<()> {
+    /// Refuses values outside their domains, for a cloth of a name and so many vertices among so many colliders and cloths.
+    pub(crate) fn check(
+        &self,
+        cloth: &str,
+        vertices: usize,
+        [colliders, cloths]: [usize; 2],
+    ) -> Result<()> {
         let owner = format!("cloth \"{cloth}\"");
         check_number(&owner, "thickness (m)", self.thickness, false)?;
         check_number(&owner, "friction", self.friction, true)?;
@@ -55,6 +63,11 @@ impl Collision {
         for &collider in self.colliders.iter().flatten() {
             if collider as usize >= colliders {
                 return refuse("collider", collider, colliders);
+            }
+        }
+        for &other in self.cloths.iter().flatten() {
+            if other as usize >= cloths {
+                return refuse("cloth", other, cloths);
             }
         }
         Ok(())

@@ -61,6 +61,11 @@ pub enum Error {
         /// The cloth's name.
         cloth: String,
     },
+    /// A frame was stopped from outside; the state is that of the frame before it.
+    Interrupted {
+        /// The frame that was not reached.
+        frame: i32,
+    },
     /// The system has no such number of threads to give.
     Threads(usize),
     /// A checkpoint that is damaged, of another version, or of another scene.
@@ -96,6 +101,7 @@ impl fmt::Display for Error {
             Self::Diverged { frame, vertex, cloth } => {
                 write!(f, "diverged at frame {frame}, vertex {vertex} of cloth \"{cloth}\"")
             }
+            Self::Interrupted { frame } => write!(f, "frame {frame} was interrupted"),
             Self::Threads(count) => {
                 write!(f, "threads is {count}; accepted: as many as the system can start")
             }

@@ -52,4 +52,4 @@ pub use law::{Spring, springs_of_mesh};
 pub use material::{DampingLaw, Limiter, SpringKind, SpringMaterial, StiffnessFrom};
 pub use overstretch::OverstretchedEdge;
 pub use settings::{IntegratorKind, LinearSolver, MOST_SUBSTEPS, Settings, StepSize};
-pub use simulation::Simulation;
+pub use simulation::{Interrupter, Simulation};

@@ -1,17 +1,22 @@
 //! A simulation as the outside holds it: cloths that move frame by frame.
 
+mod certifying;
 mod contact;
+mod interrupt;
 mod placing;
 mod plan;
 mod saving;
 
+pub use interrupt::Interrupter;
+
 use std::fmt;
+use std::ops::Range;
 
 use boucle_geometry::Vector;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::awake::with_others_awake;
-use crate::certificate::{Certificate, certify, length};
+use crate::certificate::{Certificate, length};
 use crate::cloth::{Cloth, FARTHEST, placed};
 use crate::collider::Collider;
 use crate::contact::Contacts;
@@ -62,6 +67,7 @@ pub struct Simulation {
     /// Of the present state, if anything can touch.
     intersections: Option<u64>,
     threads: ThreadPool,
+    interrupter: Interrupter,
 }
 
 /// How a frame went.
@@ -71,6 +77,8 @@ enum Outcome {
     Lost(usize),
     /// Its steps were too long for its contacts.
     TooLong,
+    /// It was stopped from outside.
+    Interrupted,
 }
 
 impl fmt::Debug for Simulation {
@@ -103,7 +111,8 @@ impl Simulation {
         colliders.iter().try_for_each(Collider::check)?;
         for cloth in &cloths {
             if let Some(collision) = &cloth.collision {
-                collision.check(&cloth.name, cloth.positions.len(), colliders.len())?;
+                let others = [colliders.len(), cloths.len()];
+                collision.check(&cloth.name, cloth.positions.len(), others)?;
             }
         }
         winds.iter().try_for_each(|wind| wind.check(&cloths))?;
@@ -148,6 +157,7 @@ impl Simulation {
             digest,
             state,
             threads,
+            interrupter: Interrupter::default(),
         };
         simulation.follow_pins();
         simulation.intersect();
@@ -198,8 +208,8 @@ impl Simulation {
     /// Moves on by one frame.
     ///
     /// # Errors
-    /// [`Error::Diverged`] leaves the state of the last good frame; [`Error::TooManySubsteps`] and
-    /// [`Error::Unstable`] leave the state as it is.
+    /// [`Error::Diverged`] and [`Error::Interrupted`] leave the state of the last good frame;
+    /// [`Error::TooManySubsteps`] and [`Error::Unstable`] leave the state as it is.
     pub fn advance(&mut self) -> Result<Certificate> {
         let mut substeps = self.plan()?;
         self.keep();
@@ -209,12 +219,15 @@ impl Simulation {
             substeps = more;
             outcome = self.run(substeps, false);
         }
+        if matches!(outcome, Outcome::Interrupted) {
+            return Err(self.interrupted());
+        }
         if let Outcome::Lost(last) = outcome {
             // Once more, looking after each step: what is lost spreads from step to step.
             self.fall_back();
             let first = match self.run(substeps, true) {
                 Outcome::Lost(first) => first,
-                Outcome::Well | Outcome::TooLong => last,
+                _ => last,
             };
             self.fall_back();
             return Err(self.diverged(first));
@@ -263,7 +276,7 @@ impl Simulation {
             perturb(&mut self.state, &self.cloths, self.settings.perturbation);
         }
         self.pins.start(&mut self.state, duration);
-        let Self { system, pins, contacts, limits, state, method, threads, .. } = self;
+        let Self { system, pins, contacts, limits, state, method, threads, interrupter, .. } = self;
         let stride =
             plan::stride(method, contacts.longest_way(&state.velocity, duration), substeps);
         // No pass has work for more.
@@ -271,6 +284,9 @@ impl Simulation {
         threads.install(|| {
             with_others_awake(others, || {
                 let outcome = (1..=substeps).find_map(|substep| {
+                    if interrupter.take() {
+                        return Some(Outcome::Interrupted);
+                    }
                     let step = Step { system, pins, h, number: substep, count: substeps, stride };
                     let is_short = step.run(state, method, contacts, limits);
                     let is_seen = watches || substep == substeps;
@@ -289,21 +305,6 @@ impl Simulation {
             frame: self.frame + 1,
             vertex: particle - self.bases[cloth] as usize,
             cloth: self.cloths[cloth].name.clone(),
-        }
-    }
-
-    /// The certificate of the present state.
-    #[must_use]
-    pub fn certificate(&self) -> Certificate {
-        let cloths = self.cloths.iter().zip(self.bases.iter().copied());
-        let certificate =
-            certify(cloths, &self.state, &self.settings.gravity, self.frame, self.substeps_taken);
-        Certificate {
-            iterations: self.iterations_taken,
-            intersections: self.intersections,
-            clipped: self.clipped,
-            contacts: self.contacts.count(),
-            ..certificate
         }
     }
 
@@ -357,7 +358,7 @@ impl Simulation {
         1.0 / self.settings.fps
     }
 
-    fn particles(&self, cloth: usize) -> std::ops::Range<usize> {
+    fn particles(&self, cloth: usize) -> Range<usize> {
         let base = self.bases[cloth] as usize;
         base..base + self.cloths[cloth].positions.len()
     }

@@ -5,6 +5,7 @@
 use boucle_solver::Collision;
 use serde::{Deserialize, Serialize};
 
+use super::check_known;
 use crate::error::{Error, Result};
 use crate::limits;
 
@@ -60,21 +61,17 @@ pub struct ClothCollision {
     pub excluded_from_colliders: Vec<u32>,
     /// The names of the colliders that it meets; all if missing.
     pub colliders: Option<Vec<String>>,
+    /// The names of the other cloths that it meets, if they meet it, too; all if missing.
+    pub cloths: Option<Vec<String>>,
 }
 
 impl ClothCollision {
-    pub(super) fn check(&self, at: &str, colliders: &[&str]) -> Result<()> {
+    pub(super) fn check(&self, at: &str, colliders: &[&str], cloths: &[&str]) -> Result<()> {
         check_numbers(at, self.thickness, self.friction)?;
-        for (index, name) in self.colliders.iter().flatten().enumerate() {
-            if !colliders.contains(&name.as_str()) {
-                let known: Vec<String> =
-                    colliders.iter().map(|name| format!("\"{name}\"")).collect();
-                let accepted = match known.as_slice() {
-                    [] => "names of colliders, of which the scene has none".to_owned(),
-                    known => known.join(", "),
-                };
-                let key = format!("{at}.colliders.{index}");
-                return Err(Error::refuse(&key, format!("\"{name}\""), &accepted));
+        let lists = [("colliders", &self.colliders, colliders), ("cloths", &self.cloths, cloths)];
+        for (kind, chosen, known) in lists {
+            for (index, name) in chosen.iter().flatten().enumerate() {
+                check_known(&format!("{at}.{kind}.{index}"), name, known, kind)?;
             }
         }
         Ok(())
@@ -88,7 +85,7 @@ impl ClothCollision {
     pub(crate) fn collision(
         &self,
         general: &CollisionDescription,
-        colliders: &[&str],
+        [colliders, cloths]: [&[&str]; 2],
         vertex_count: usize,
         at: &str,
     ) -> Result<Option<Collision>> {
@@ -102,15 +99,18 @@ impl ClothCollision {
         if !self.enabled.unwrap_or(general.enabled) {
             return Ok(None);
         }
-        let number = |name: &String| colliders.iter().position(|other| other == name);
-        let met = |names: &Vec<String>| names.iter().filter_map(number).map(|n| n as u32).collect();
+        let met = |names: &Vec<String>, known: &[&str]| {
+            let number = |name: &String| known.iter().position(|other| other == name);
+            names.iter().filter_map(number).map(|number| number as u32).collect()
+        };
         Ok(Some(Collision {
             with_self: self.with_self.unwrap_or(general.with_self),
             thickness: self.thickness.unwrap_or(general.thickness),
             friction: self.friction.unwrap_or(general.friction),
             excluded_from_self: self.excluded_from_self.clone(),
             excluded_from_colliders: excluded.clone(),
-            colliders: self.colliders.as_ref().map(met),
+            colliders: self.colliders.as_ref().map(|names| met(names, colliders)),
+            cloths: self.cloths.as_ref().map(|names| met(names, cloths)),
         }))
     }
 }

@@ -4,6 +4,7 @@ use boucle_solver::WindLaw;
 use serde::{Deserialize, Serialize};
 use toml::Value;
 
+use super::check_known;
 use super::choice::Choice;
 use super::table;
 use crate::error::{Error, Result};
@@ -44,7 +45,7 @@ impl Choice for ForceKind {
     const LATER: &'static [&'static str] = &["drag", "turbulence", "vortex", "water", "point"];
 }
 
-/// Where a force acts: a box of the world, or vertices of every cloth.
+/// Where a force acts: a box of the world, or a cloth, or vertices of that or of every cloth.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RegionDescription {
@@ -52,6 +53,8 @@ pub struct RegionDescription {
     pub r#box: Option<[[f64; 3]; 2]>,
     /// Vertex numbers, from 0.
     pub vertices: Option<Vec<u32>>,
+    /// The name of the one cloth it acts on.
+    pub cloth: Option<String>,
 }
 
 impl Force {
@@ -72,7 +75,7 @@ impl Force {
         }
     }
 
-    pub(super) fn check(&self, at: &str) -> Result<()> {
+    pub(super) fn check(&self, at: &str, cloths: &[&str]) -> Result<()> {
         limits::vector(&format!("{at}.velocity"), &self.velocity, MAX_SPEED, " m/s")?;
         self.law(at)?;
         let numbers = [("coefficient", self.coefficient), ("air_density", self.air_density)];
@@ -82,18 +85,23 @@ impl Force {
                 limits::within(&format!("{at}.{key}"), value, &range, "0 to 1e6")?;
             }
         }
-        self.region.as_ref().map_or(Ok(()), |region| region.check(&format!("{at}.region")))
+        let region = self.region.as_ref();
+        region.map_or(Ok(()), |region| region.check(&format!("{at}.region"), cloths))
     }
 }
 
 impl RegionDescription {
-    fn check(&self, at: &str) -> Result<()> {
-        match (&self.r#box, &self.vertices) {
-            (Some(_), Some(_)) | (None, None) => {
-                Err(Error::input(format!("{at} accepts either box or vertices")))
+    fn check(&self, at: &str, cloths: &[&str]) -> Result<()> {
+        let of_cloth = self.vertices.is_some() || self.cloth.is_some();
+        match (&self.r#box, of_cloth) {
+            (Some(_), true) | (None, false) => {
+                Err(Error::input(format!("{at} accepts either box or vertices, cloth or both")))
             }
-            (None, Some(_)) => Ok(()),
-            (Some([min, max]), None) => {
+            (None, true) => match &self.cloth {
+                Some(name) => check_known(&format!("{at}.cloth"), name, cloths, "cloths"),
+                None => Ok(()),
+            },
+            (Some([min, max]), false) => {
                 limits::vector(&format!("{at}.box.0"), min, f64::MAX, " m")?;
                 limits::vector(&format!("{at}.box.1"), max, f64::MAX, " m")?;
                 match (0..3).find(|&axis| min[axis] > max[axis]) {

@@ -125,11 +125,11 @@ impl Scene {
         for cloth in &self.cloth {
             let at = format!("cloth.{}", cloth.name);
             cloth.check(&at)?;
-            cloth.collision.check(&format!("{at}.collision"), &colliders)?;
+            cloth.collision.check(&format!("{at}.collision"), &colliders, &cloths)?;
         }
         self.solver.check(self.scene.fps)?;
         for (index, force) in self.force.iter().enumerate() {
-            force.check(&format!("force.{index}"))?;
+            force.check(&format!("force.{index}"), &cloths)?;
         }
         Ok(())
     }
@@ -145,6 +145,19 @@ fn check_names(list: &str, names: &[&str], folded: fn(&&str) -> String, how: &st
         }
     }
     Ok(())
+}
+
+/// Refuses a name that is not among those of a kind of thing.
+fn check_known(key: &str, name: &str, known: &[&str], kind: &str) -> Result<()> {
+    if known.contains(&name) {
+        return Ok(());
+    }
+    let known: Vec<String> = known.iter().map(|name| format!("\"{name}\"")).collect();
+    let accepted = match known.as_slice() {
+        [] => format!("names of {kind}, of which the scene has none"),
+        known => known.join(", "),
+    };
+    Err(Error::refuse(key, format!("\"{name}\""), &accepted))
 }
 
 impl Timing {

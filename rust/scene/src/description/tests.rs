@@ -350,7 +350,7 @@ fn cloth_collides_unless_it_is_told_not_to() {
         let changes: Vec<String> = changes.iter().map(|&change| change.to_owned()).collect();
         let scene = Scene::from_toml(GOOD, &changes).expect("a good scene");
         let own = &scene.cloth[0].collision;
-        own.collision(&scene.collision, &["a", "b"], 20, "at").expect("good vertices")
+        own.collision(&scene.collision, [&["a", "b"], &[]], 20, "at").expect("good vertices")
     };
     assert_eq!(collision(&[]), Some(boucle_solver::Collision::default()));
     assert_eq!(collision(&["collision.enabled=false"]), None);
@@ -376,7 +376,8 @@ fn excluded_vertices_must_be_there() {
         let change = format!("cloth.0.collision.{key}=[3, 20]");
         let scene = Scene::from_toml(GOOD, &[change]).expect("the mesh is not known yet");
         let own = &scene.cloth[0].collision;
-        let met = |count| own.collision(&scene.collision, &[], count, "cloth.flag.collision");
+        let met =
+            |count| own.collision(&scene.collision, [&[], &[]], count, "cloth.flag.collision");
         let error = met(20).expect_err("vertex 20 of 20").to_string();
         assert_eq!(error, format!("cloth.flag.collision.{key}.1 = 20; accepted: 0 to 19"));
         assert!(met(21).is_ok());
@@ -394,11 +395,45 @@ fn a_cloth_may_name_the_colliders_that_it_meets() {
     };
     let scene = read("[\"floor\"]").expect("a good scene");
     let own = &scene.cloth[0].collision;
-    let collision = own.collision(&scene.collision, &["ball", "floor"], 20, "").expect("good");
+    let collision =
+        own.collision(&scene.collision, [&["ball", "floor"], &[]], 20, "").expect("good");
     assert_eq!(collision.and_then(|collision| collision.colliders), Some(vec![1]));
     let error = read("[\"flor\"]").expect_err("no such collider").to_string();
     let expected = "cloth.flag.collision.colliders.0 = \"flor\"; accepted: \"ball\", \"floor\"";
     assert_eq!(error, expected);
+}
+
+#[test]
+fn a_cloth_may_name_the_cloths_that_it_meets_and_a_wind_the_one_that_it_blows_on() {
+    let read = |changes: &[&str]| {
+        let changes: Vec<String> = changes.iter().map(|&change| change.to_owned()).collect();
+        Scene::from_toml(GOOD, &changes)
+    };
+    let scene = read(&["cloth.0.collision.cloths=[\"flag\"]"]).expect("a good scene");
+    let own = &scene.cloth[0].collision;
+    let collision = own.collision(&scene.collision, [&[], &["other", "flag"]], 20, "");
+    assert_eq!(collision.expect("good").and_then(|collision| collision.cloths), Some(vec![1]));
+    let region = "force.0.region={cloth=\"flag\", vertices=[3]}";
+    let scene = read(&[region]).expect("a good scene");
+    let region = scene.force[0].region.as_ref().expect("a region");
+    assert_eq!(
+        (region.cloth.as_deref(), region.vertices.as_deref()),
+        (Some("flag"), Some(&[3][..]))
+    );
+    assert!(read(&["force.0.region={cloth=\"flag\"}"]).is_ok());
+    for (change, expected) in [
+        (
+            "cloth.0.collision.cloths=[\"flga\"]",
+            "cloth.flag.collision.cloths.0 = \"flga\"; accepted: \"flag\"",
+        ),
+        ("force.0.region={cloth=\"flga\"}", "force.0.region.cloth = \"flga\"; accepted: \"flag\""),
+        (
+            "force.0.region={cloth=\"flag\", box=[[0,0,0],[1,1,1]]}",
+            "force.0.region accepts either box or vertices, cloth or both",
+        ),
+    ] {
+        assert_eq!(read(&[change]).expect_err(change).to_string(), expected);
+    }
 }
 
 #[test]

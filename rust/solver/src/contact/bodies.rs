@@ -65,6 +65,8 @@ pub(super) struct Bodies {
     excluded: [Exclusion; 2],
     /// For each cloth, which colliders it meets.
     meets: Vec<Vec<bool>>,
+    /// For each cloth, which cloths it meets.
+    meets_cloths: Vec<Vec<bool>>,
     /// Whether everything may touch everything.
     all_touch: bool,
 }
@@ -83,11 +85,13 @@ impl Bodies {
             easing: None,
             excluded: [(); 2].map(|()| Exclusion::new(particle_count)),
             meets: Vec::new(),
+            meets_cloths: Vec::new(),
             all_touch: true,
         };
         for (cloth, base) in placed(cloths) {
             bodies.add_cloth(cloth, base, colliders.len());
         }
+        bodies.pair(cloths);
         for collider in colliders {
             bodies.add_collider(collider);
         }
@@ -128,6 +132,18 @@ impl Bodies {
         if cloth.collision.is_some() {
             self.cloths.add_mesh(&cloth.mesh, base);
         }
+    }
+
+    /// Notes which cloths meet: those that name each other, or do not choose.
+    fn pair(&mut self, cloths: &[Cloth]) {
+        let names = |one: usize, other: usize| {
+            let chosen = cloths[one].collision.as_ref().and_then(|chosen| chosen.cloths.as_ref());
+            one == other || chosen.is_none_or(|chosen| chosen.contains(&(other as u32)))
+        };
+        let each = 0..cloths.len();
+        let of = |one| each.clone().map(move |other| names(one, other) && names(other, one));
+        self.meets_cloths = each.clone().map(|one| of(one).collect()).collect();
+        self.all_touch &= !self.meets_cloths.iter().flatten().any(|meets| !meets);
     }
 
     fn add_collider(&mut self, collider: &Collider) {
@@ -193,7 +209,7 @@ impl Bodies {
         let (kind, meet) = match (other as usize).checked_sub(self.meets.len()) {
             Some(collider) => (1, self.meets[one as usize][collider]),
             None if one == other => (0, self.each[one as usize].with_self),
-            None => return true,
+            None => return self.meets_cloths[one as usize][other as usize],
         };
         meet && self.excluded[kind].keeps(first) && self.excluded[kind].keeps(second)
     }

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The force of a face is shared equally by its corners. A region limits the wind to a box in space, where a
-//! particle feels it while it is inside, or to some vertices.
+//! particle feels it while it is inside, or to some vertices, of every cloth or of one.
 //!
 //! Source: Provot 1995 for the first law; the second is the pressure of a flow on a plate.
 
@@ -45,6 +45,8 @@ pub enum Region {
     Box(Aabb),
     /// On these vertices of every cloth.
     Vertices(Vec<u32>),
+    /// On one cloth, by number: on these of its vertices, on all if `None`.
+    Cloth(u32, Option<Vec<u32>>),
 }
 
 /// A steady wind.
@@ -77,7 +79,20 @@ impl Wind {
                 domain: "-1e4 to 1e4",
             });
         }
-        let Region::Vertices(vertices) = &self.region else { return Ok(()) };
+        let (cloths, vertices) = match &self.region {
+            Region::Everywhere | Region::Box(_) => return Ok(()),
+            Region::Vertices(vertices) => (cloths, vertices.as_slice()),
+            Region::Cloth(cloth, vertices) => match cloths.get(*cloth as usize) {
+                Some(cloth) => (std::slice::from_ref(cloth), vertices.as_deref().unwrap_or(&[])),
+                None => {
+                    return Err(Error::OutOfDomain {
+                        quantity: "the cloth of a wind".to_owned(),
+                        value: f64::from(*cloth),
+                        domain: "the number of a cloth",
+                    });
+                }
+            },
+        };
         for cloth in cloths {
             let count = cloth.positions.len();
             if let Some(vertex) = vertices.iter().find(|&&vertex| vertex as usize >= count) {
@@ -94,10 +109,13 @@ impl Wind {
     }
 }
 
+/// A wind, and for regions of vertices whether it blows on each particle.
+type Blowing = (Wind, Option<Vec<bool>>);
+
 /// All winds, and what they need to know of the meshes.
 #[derive(Debug)]
 pub(crate) struct Air {
-    winds: Vec<(Wind, Option<Vec<bool>>)>,
+    winds: Vec<Blowing>,
     /// Corners of all faces, in the simulation's numbering.
     face_starts: Vec<u32>,
     corners: Vec<u32>,
@@ -157,11 +175,22 @@ impl Air {
 
     /// Largest damping (N·s/m) that the classic law puts on a particle.
     pub(crate) fn damping(&self) -> f64 {
-        let coefficients = self.winds.iter().map(|(wind, _)| match wind.law {
-            WindLaw::Vertex { coefficient } => coefficient,
-            WindLaw::Face { .. } => 0.0,
+        let coefficients = |of: Option<u32>| {
+            let on_it = move |(wind, _): &&Blowing| match wind.region {
+                Region::Cloth(cloth, _) => of == Some(cloth),
+                _ => of.is_none(),
+            };
+            let each = self.winds.iter().filter(on_it).map(|(wind, _)| match wind.law {
+                WindLaw::Vertex { coefficient } => coefficient,
+                WindLaw::Face { .. } => 0.0,
+            });
+            each.sum::<f64>()
+        };
+        let own = self.winds.iter().filter_map(|(wind, _)| match wind.region {
+            Region::Cloth(cloth, _) => Some(coefficients(Some(cloth))),
+            _ => None,
         });
-        coefficients.sum()
+        coefficients(None) + own.fold(0.0, f64::max)
     }
 
     /// Damping (N·s/m) that winds put on a particle, at most; faces as they were last observed.
@@ -180,15 +209,16 @@ impl Air {
                 faces.map(of_face).sum()
             }
         };
-        self.winds.iter().map(|(wind, _)| of_wind(wind)).sum()
+        let blowing = self.winds.iter().filter(|(_, mask)| reaches(mask.as_ref(), particle));
+        blowing.map(|(wind, _)| of_wind(wind)).sum()
     }
 
     /// Largest damping (1/s) that pressure puts on a particle, with faces up to `gain` (m/s) faster than in `state`.
     ///
     /// The slope of `1/2 rho A s²` is `rho A s`. A step that is stable for it takes no more than the whole of s.
     pub(crate) fn pressure_damping(&self, state: &State, inverse_masses: &[f64], gain: f64) -> f64 {
-        let pressing = self.winds.iter().filter_map(|(wind, _)| match wind.law {
-            WindLaw::Face { air_density } => Some((air_density, wind.velocity)),
+        let pressing = self.winds.iter().filter_map(|(wind, mask)| match wind.law {
+            WindLaw::Face { air_density } => Some((air_density, wind.velocity, mask.as_ref())),
             WindLaw::Vertex { .. } => None,
         });
         let pressing: Vec<_> = pressing.collect();
@@ -197,8 +227,9 @@ impl Air {
         }
         let mut scratch = AirScratch::default();
         self.observe(state, &mut scratch);
-        let share_of = |face: &FaceAir| {
-            let slopes = pressing.iter().map(|&(air_density, velocity)| {
+        let share_of = |particle: usize, face: &FaceAir| {
+            let blowing = pressing.iter().filter(|(.., mask)| reaches(*mask, particle));
+            let slopes = blowing.map(|&(air_density, velocity, _)| {
                 air_density * ((velocity - face.velocity).norm() + gain)
             });
             slopes.sum::<f64>() * face.area * face.corner_share
@@ -207,7 +238,7 @@ impl Air {
             let starts = self.particle_starts[particle] as usize
                 ..self.particle_starts[particle + 1] as usize;
             let faces = self.faces_of[starts].iter().map(|&face| &scratch.faces[face as usize]);
-            faces.map(share_of).sum::<f64>() * inverse_masses[particle]
+            faces.map(|face| share_of(particle, face)).sum::<f64>() * inverse_masses[particle]
         };
         (0..state.len()).map(damping_of).fold(0.0, f64::max)
     }
@@ -267,9 +298,8 @@ impl Air {
         let mut force = Vector::zeros();
         for (wind, mask) in &self.winds {
             let blows = match &wind.region {
-                Region::Everywhere => true,
                 Region::Box(region) => region.contains(&position),
-                Region::Vertices(_) => mask.as_ref().is_some_and(|mask| mask[particle]),
+                _ => reaches(mask.as_ref(), particle),
             };
             if !blows {
                 continue;
@@ -295,14 +325,24 @@ impl Air {
 
 /// Which particles a region of vertices holds.
 fn vertex_mask(region: &Region, cloths: &[Cloth]) -> Option<Vec<bool>> {
-    let Region::Vertices(vertices) = region else { return None };
+    let (of, vertices) = match region {
+        Region::Everywhere | Region::Box(_) => return None,
+        Region::Vertices(vertices) => (None, Some(vertices)),
+        Region::Cloth(cloth, vertices) => (Some(*cloth as usize), vertices.as_ref()),
+    };
     let mut mask = Vec::new();
-    for cloth in cloths {
+    for (number, cloth) in cloths.iter().enumerate() {
         let base = mask.len();
-        mask.resize(base + cloth.positions.len(), false);
-        for &vertex in vertices {
+        let is_of = of.is_none_or(|of| of == number);
+        mask.resize(base + cloth.positions.len(), is_of && vertices.is_none());
+        for &vertex in vertices.into_iter().flatten().filter(|_| is_of) {
             mask[base + vertex as usize] = true;
         }
     }
     Some(mask)
+}
+
+/// Whether a wind with a mask blows on a particle; without one it may, wherever it is.
+fn reaches(mask: Option<&Vec<bool>>, particle: usize) -> bool {
+    mask.is_none_or(|mask| mask[particle])
 }

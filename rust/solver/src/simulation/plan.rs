@@ -108,11 +108,11 @@ impl Simulation {
     /// Steps with which the frame just run is to be done once more, if it is.
     pub(super) fn plan_again(&self, substeps: u32, outcome: &Outcome) -> Option<u32> {
         let memory = self.method.memory().filter(|_| self.settings.step_size == StepSize::Auto)?;
-        if matches!(outcome, Outcome::TooLong) {
-            return Accuracy::shorter(substeps);
+        match outcome {
+            Outcome::TooLong => Accuracy::shorter(substeps),
+            Outcome::Interrupted => None,
+            _ => self.accuracy_now().again(substeps, memory.mean_error(substeps)),
         }
-        let accuracy = self.accuracy_now();
-        accuracy.again(substeps, memory.mean_error(substeps))
     }
 
     /// Whether a frame of so many steps may be done once more with more, if they are too long for its contacts.

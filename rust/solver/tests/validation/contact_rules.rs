@@ -88,6 +88,63 @@ fn a_cloth_meets_the_colliders_of_its_list_and_no_others() {
     }
 }
 
+/// Over a shelf lies a cloth, which carries another only if both say so.
+#[test]
+fn cloths_meet_if_both_name_each_other_or_name_none() {
+    for integrator in RULES {
+        let lowest_of_upper = |upper: Option<Vec<u32>>, lower: Option<Vec<u32>>| {
+            let cloth = |height: f64, list: &Option<Vec<u32>>| {
+                with(lifted(height, SpringMaterial::default()), |collision| {
+                    collision.cloths.clone_from(list);
+                })
+            };
+            let mut held = cloth(0.2, &lower);
+            held.pins = (0..64).collect();
+            let mut simulation =
+                among(vec![cloth(0.3, &upper), held], vec![floor(0.3)], settings(integrator));
+            run(&mut simulation, 12);
+            assert_eq!(simulation.certificate().intersections, Some(0), "{integrator:?}");
+            lowest(&simulation, 0)
+        };
+        for (upper, lower) in [
+            (None, None),
+            (Some(vec![1]), None),
+            (None, Some(vec![0])),
+            (Some(vec![1]), Some(vec![0])),
+        ] {
+            assert!(lowest_of_upper(upper, lower) > 0.2, "{integrator:?}");
+        }
+        for (upper, lower) in [
+            (Some(vec![]), None),
+            (None, Some(vec![])),
+            (Some(vec![1]), Some(vec![1])),
+            (Some(vec![]), Some(vec![0])),
+        ] {
+            let below = lowest_of_upper(upper, lower);
+            assert!(below > 0.0 && below < 0.15, "{integrator:?}: {below}");
+        }
+    }
+}
+
+/// Strain, energies and hash are a cloth's own, and all else is everybody's.
+#[test]
+fn the_certificate_of_one_cloth_is_that_of_a_simulation_of_it_where_nothing_is_shared() {
+    let ghost = |height: f64| Cloth { collision: None, ..lifted(height, loose()) };
+    let pinned = Cloth { pins: vec![0, 7], ..ghost(0.5) };
+    let settings = || Settings {
+        step_size: boucle_solver::StepSize::Substeps(20),
+        ..settings(IntegratorKind::SymplecticEuler)
+    };
+    let mut both = among(vec![ghost(0.1), pinned.clone()], Vec::new(), settings());
+    run(&mut both, 5);
+    for (number, cloth) in [ghost(0.1), pinned].into_iter().enumerate() {
+        let mut alone = among(vec![cloth], Vec::new(), settings());
+        run(&mut alone, 5);
+        assert_eq!(both.certificate_of(number..number + 1), alone.certificate(), "{number}");
+    }
+    assert_eq!(both.certificate_of(0..2), both.certificate());
+}
+
 /// Three rows of vertices that no spring holds: the triangles between them fall through the floor, and with them the first
 /// two rows, which have no others.
 #[test]

@@ -16,6 +16,7 @@ mod dynamics;
 mod forces;
 mod implicit;
 mod integrators;
+mod interruption;
 mod invariance;
 mod lattice;
 mod limiters;

@@ -1,7 +1,9 @@
 //! Wind on faces worked out by hand: its direction, its size, and where it blows.
 
 use boucle_geometry::{Aabb, Mesh, Vector};
-use boucle_solver::{Cloth, IntegratorKind, Mass, Region, Wind, WindLaw};
+use boucle_solver::{
+    Cloth, IntegratorKind, Mass, Region, Settings, Simulation, StepSize, Wind, WindLaw,
+};
 
 use crate::sheets::{cloth, forces_at, grid_mesh, launched, material, run, steps_of};
 
@@ -112,6 +114,47 @@ fn a_region_of_vertices_is_pushed_alone_and_winds_add_up() {
     let second = wind([1.0, 2.0, 3.0], PRESSURE, Region::Vertices(vec![5]));
     let both = [0.17, 0.0, 0.0];
     assert_forces(&corner(), &[first, second], &[flat, none, none, none, none, both]);
+}
+
+/// Of two cloths each has its own wind, on all of it or on some vertices; what each feels is what it feels alone.
+#[test]
+fn a_wind_of_one_cloth_leaves_the_others_alone() {
+    // One linear system for both is solved as exactly as one for each.
+    for (integrator, law, allowed) in [
+        (IntegratorKind::Bdf2, CLASSIC, 1e-3),
+        (IntegratorKind::Bdf2, PRESSURE, 1e-3),
+        (IntegratorKind::SymplecticEuler, CLASSIC, 1e-12),
+        (IntegratorKind::SymplecticEuler, PRESSURE, 1e-12),
+    ] {
+        let winds = [([3.0, 1.0, 2.0], None), ([-2.0, 5.0, 1.0], Some(vec![0, 1, 4]))];
+        let settings = || Settings {
+            integrator,
+            step_size: StepSize::Substeps(8),
+            gravity: Vector::zeros(),
+            threads: 1,
+            ..Settings::default()
+        };
+        let blow = |number: usize, cloth: u32| {
+            let (velocity, vertices) = winds[number].clone();
+            wind(velocity, law, Region::Cloth(cloth, vertices))
+        };
+        let cloths = vec![corner(), corner()];
+        let mut both = Simulation::new(cloths, vec![blow(0, 0), blow(1, 1)], settings())
+            .expect("a simulation");
+        run(&mut both, 3);
+        for number in 0..2 {
+            let mut alone = Simulation::new(vec![corner()], vec![blow(number, 0)], settings())
+                .expect("a simulation");
+            run(&mut alone, 3);
+            let moved = alone.velocities(0).iter().map(|v| v.norm()).fold(0.0, f64::max);
+            assert!(moved > 1e-3, "{number} feels nothing");
+            for (one, other) in both.positions(number).iter().zip(alone.positions(0)) {
+                assert!((one - other).norm() < allowed * moved, "{integrator:?}: {number}");
+            }
+        }
+        let nobody = Simulation::new(vec![corner()], vec![blow(0, 1)], settings());
+        assert!(nobody.is_err_and(|error| error.to_string().contains("the cloth of a wind is 1")));
+    }
 }
 
 /// A step of forward Euler from a velocity v: the wind acts by u - v. What moves with the wind feels none.

@@ -1,0 +1,261 @@
+"""The files of a bake: samples, numbers and report of every cloth, and the one checkpoint from which they go on together."""
+
+from __future__ import annotations
+
+import os
+import time
+import uuid
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, Protocol
+
+from . import checkpoint_file, quantity, report, vertex_file
+from .cache_paths import CacheFiles
+from .checkpoint_file import Checkpoint
+from .pc2 import Writer
+from .points import Points
+from .quantity import Numbers
+from .refusal import Refusal, cannot_write
+from .settle import Settling
+
+CHECKPOINT_SECONDS = 5.0
+"""A kill loses at most about this much work; writing a checkpoint takes milliseconds."""
+
+
+class Saved(Protocol):
+    """What can be saved and taken up again."""
+
+    frame: int
+
+    def checkpoint(self) -> bytes: ...
+    def restore(self, checkpoint: bytes) -> None: ...
+
+
+class Plan(NamedTuple):
+    """What to keep of a cloth: it is simulated from start to end, kept from first to end."""
+
+    start: int
+    first: int
+    end: int
+    vertex_count: int
+    digest: str
+    """Of everything that the motion depends on: one for all cloths of a bake."""
+    keeps: tuple[str, ...] = ()
+    """Keys of the quantities that are kept beside the positions."""
+    settling: Settling = Settling()
+    """Before the start."""
+
+
+class Sample(NamedTuple):
+    """One frame of one cloth."""
+
+    positions: Points
+    """(m), object space, float32."""
+    numbers: Numbers
+    certificate: Mapping[str, Any]
+
+
+class Store:
+    """The files of one cloth, but for the checkpoint."""
+
+    def __init__(
+        self, files: CacheFiles, plan: Plan, rows: report.Report, keeps_previous: bool = True
+    ) -> None:
+        """Nothing is written before `begin` or `resume`."""
+        self._keeps_previous = keeps_previous
+        self.files = files
+        self.plan = plan
+        self.rows = rows
+        self._writer: Writer | None = None
+        self._numbers: dict[str, vertex_file.Writer] = {}
+
+    @property
+    def name(self) -> str:
+        """The cloth's name."""
+        return str(self.rows.cloth["name"])
+
+    @property
+    def sample_count(self) -> int:
+        """Frames in the file."""
+        return self._writer.sample_count if self._writer else 0
+
+    def begin(self) -> None:
+        """Start afresh: files of an earlier bake are set aside as the previous ones, or removed."""
+        try:
+            if self._keeps_previous:
+                set_aside(self.files)
+            else:
+                for path in self.files.existing():
+                    os.remove(path)
+        except OSError as error:
+            raise cannot_write(self.files.pc2, error) from error
+        self._writer = Writer.create(self.files.pc2, self.plan.vertex_count, self.plan.first)
+        for key in self.plan.keeps:
+            path = getattr(self.files, key)
+            self._numbers[key] = vertex_file.Writer.create(path, self.plan.vertex_count)
+
+    def resume(self, sample_count: int) -> None:
+        """Go on after so many samples."""
+        self._writer = Writer.reopen(self.files.pc2, self.plan.vertex_count, sample_count)
+        self._resume_numbers(sample_count)
+        self.rows.keep_first(sample_count, report.read(self.files.report))
+
+    def _resume_numbers(self, sample_count: int) -> None:
+        """Numbers that were not kept from the start cannot be made up for: what is there goes."""
+        for key in (one.key for one in quantity.ALL):
+            path, writer = getattr(self.files, key), None
+            if key in self.plan.keeps:
+                writer = vertex_file.Writer.reopen(path, self.plan.vertex_count, sample_count)
+            if writer is not None:
+                self._numbers[key] = writer
+            elif os.path.isfile(path):
+                os.remove(path)
+
+    def write(self, frame: int, sample: Sample, seconds: float) -> None:
+        """Add a frame, if it is one to keep."""
+        if frame < self.plan.first:
+            return
+        for key, writer in self._numbers.items():
+            writer.append(sample.numbers[key])
+        self._writer.append(sample.positions)
+        self.rows.add(sample.certificate, seconds)
+
+    def close(self) -> None:
+        """Close the files."""
+        for writer in (self._writer, *self._numbers.values()):
+            if writer:
+                writer.close()
+
+
+class Stores:
+    """The files of all cloths of a bake.
+
+    The first cloth's checkpoint holds the state of all; the others' hold none and tell by the bake's identity whose they are.
+    """
+
+    def __init__(self, each: Sequence[Store]) -> None:
+        """Nothing is written before `begin` or `resume`."""
+        self.each = list(each)
+        self.identity = uuid.uuid4().hex
+        """Of this bake; a resumed one keeps it."""
+        self._saved_at = time.monotonic()
+        self.last_frame: int | None = None
+
+    @property
+    def plan(self) -> Plan:
+        """What is simulated: the same frames for all cloths."""
+        return self.each[0].plan
+
+    @property
+    def sample_count(self) -> int:
+        """Frames in every file."""
+        return self.each[0].sample_count
+
+    def begin(self) -> None:
+        """Start afresh."""
+        for store in self.each:
+            store.begin()
+        self._identify()
+
+    def resume(self, simulation: Saved) -> bool:
+        """Take up the checkpoint; False if there is none.
+
+        Raises:
+            Refusal: The checkpoint is damaged, or of other cloths.
+        """
+        found = [checkpoint_file.read(store.files.checkpoint) for store in self.each]
+        if not any(found):
+            return False
+        state = self._common(found)
+        simulation.restore(state.state)
+        for store in self.each:
+            store.resume(state.sample_count)
+        self.identity, self.last_frame = state.bake, state.frame
+        self._identify()
+        return True
+
+    def _common(self, found: Sequence[Checkpoint | None]) -> Checkpoint:
+        """The checkpoint with the state, if all belong to one bake of these cloths."""
+        first = next(checkpoint for checkpoint in found if checkpoint)
+        if len(self.each) == 1 and len(first.cloths) > 1:
+            others = ", ".join(f'"{name}"' for name in first.cloths if name != self.each[0].name)
+            raise Refusal(
+                f'"{self.each[0].name}" was baked together with {others}: go on with all of them, '
+                "or bake from the start"
+            )
+        for store, checkpoint in zip(self.each, found, strict=True):
+            if checkpoint is None or checkpoint.bake != found[0].bake:
+                odd = store.name if found[0] else self.each[0].name
+                raise Refusal(
+                    f'the bake of "{odd}" has gone or is another one than that of '
+                    f'"{(self.each[0] if found[0] else self.each[1]).name}": bake them from the start'
+                )
+        if first.digest != self.plan.digest or len(first.cloths) > len(self.each):
+            raise Refusal(
+                f'the checkpoint "{self.each[0].files.checkpoint}" is of other settings or another '
+                "mesh: undo the change or bake from the start"
+            )
+        return first
+
+    def _identify(self) -> None:
+        for store in self.each:
+            store.rows.record["bake"] = self.identity
+
+    def write(self, frame: int, samples: Sequence[Sample], seconds: float) -> None:
+        """Add a frame of every cloth."""
+        for store, sample in zip(self.each, samples, strict=True):
+            store.write(frame, sample, seconds)
+        self.last_frame = frame
+
+    def mark(self, simulation: Saved) -> None:
+        """At the start of a bake of several cloths: bind their files to each other."""
+        if len(self.each) == 1:
+            return
+        self._save(simulation)
+        for store in self.each[1:]:
+            checkpoint_file.write(store.files.checkpoint, self._checkpoint(b""))
+
+    def save(self, simulation: Saved) -> None:
+        """Write reports and checkpoint, if it is time."""
+        if time.monotonic() - self._saved_at >= CHECKPOINT_SECONDS:
+            self._save(simulation)
+
+    def finish(self, simulation: Saved | None) -> None:
+        """Write reports and checkpoint; no checkpoint of a state that the files do not end with."""
+        if self.last_frame is None:
+            return
+        if simulation is not None and simulation.frame == self.last_frame:
+            self._save(simulation)
+        else:
+            self._write_reports()
+
+    def _save(self, simulation: Saved) -> None:
+        self._write_reports()
+        state = self._checkpoint(simulation.checkpoint())
+        checkpoint_file.write(self.each[0].files.checkpoint, state)
+        self._saved_at = time.monotonic()
+
+    def _checkpoint(self, state: bytes) -> Checkpoint:
+        names = tuple(store.name for store in self.each)
+        return Checkpoint(
+            self.last_frame, self.sample_count, self.plan.digest, state, self.identity, names
+        )
+
+    def _write_reports(self) -> None:
+        for store in self.each:
+            store.rows.write(store.files.report)
+
+    def close(self) -> None:
+        """Close the files."""
+        for store in self.each:
+            store.close()
+
+
+def set_aside(files: CacheFiles) -> None:
+    """Keep the files of an earlier bake under the name `previous`."""
+    if not os.path.isfile(files.pc2):
+        return
+    for path, kept in zip(files, files.previous, strict=True):
+        if os.path.isfile(path):
+            os.replace(path, kept)
+        elif os.path.isfile(kept):
+            os.remove(kept)

@@ -1,0 +1,29 @@
+//! Certificates of the present state.
+
+use std::ops::Range;
+
+use super::Simulation;
+use crate::certificate::{Certificate, certify};
+
+impl Simulation {
+    /// The certificate of the present state.
+    #[must_use]
+    pub fn certificate(&self) -> Certificate {
+        self.certificate_of(0..self.cloths.len())
+    }
+
+    /// The certificate of some cloths: strain, energies and hash are theirs, all else is the whole simulation's.
+    #[must_use]
+    pub fn certificate_of(&self, cloths: Range<usize>) -> Certificate {
+        let cloths = self.cloths[cloths.clone()].iter().zip(self.bases[cloths].iter().copied());
+        let certificate =
+            certify(cloths, &self.state, &self.settings.gravity, self.frame, self.substeps_taken);
+        Certificate {
+            iterations: self.iterations_taken,
+            intersections: self.intersections,
+            clipped: self.clipped,
+            contacts: self.contacts.count(),
+            ..certificate
+        }
+    }
+}

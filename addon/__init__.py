@@ -13,10 +13,12 @@ from .operators import cache as cache_operators
 from .operators import cloth as cloth_operators
 from .panels import cache as cache_panels
 from .panels import cloth as cloth_panels
-from .panels import collisions, forces, shape, solver, springs
+from .panels import collisions, field_weights, forces, shape, solver, springs
 from .properties import cloth as cloth_properties
+from .properties import field_weights as field_weight_properties
 
 _CLASSES = (
+    *field_weight_properties.CLASSES,
     *cloth_properties.CLASSES,
     *preferences.CLASSES,
     *add.CLASSES,
@@ -28,6 +30,7 @@ _CLASSES = (
     *shape.CLASSES,
     *collisions.CLASSES,
     *forces.CLASSES,
+    *field_weights.CLASSES,
     *solver.CLASSES,
     *cache_panels.CLASSES,
 )

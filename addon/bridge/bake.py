@@ -19,6 +19,7 @@ from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, sentence_of
 from . import (
     cache,
+    fields,
     live,
     preflight,
     registry,
@@ -30,6 +31,7 @@ from . import (
     vertex_attributes,
 )
 from .colliders import Colliders
+from .fields import Fields
 
 
 @dataclass(frozen=True)
@@ -92,19 +94,21 @@ class Bake:
         sampling.refuse_other_count(obj, depsgraph)
         matrix = sampling.object_matrix(obj, depsgraph)
         rest_world = points.transform(sampling.targets(obj, depsgraph), matrix, "d")
-        met = Colliders(obj, scene, depsgraph)
+        met, pushing = Colliders(obj, scene, depsgraph), Fields(obj, scene)
+        forces = pushing.sample(depsgraph)
         make = simulation.maker(obj, description, rest_world, self.options.threads, met.arrays)
         build = Step(start, make)
         record = self._record(obj, description)
         yield build
         solver = build.result()
+        core_bake.push(solver, forces)
         self.store = self._make_store(self._object(), description, record, solver)
         is_pinned = simulation.is_pinned(description)
 
         def pose_at(frame: int) -> Pose:
             if frame < self._began[1]:
                 self._began = (time.monotonic(), frame)
-            return self._pose(frame, is_pinned, met)
+            return self._pose(frame, is_pinned, met, pushing)
 
         try:
             yield from core_bake.bake(
@@ -127,7 +131,7 @@ class Bake:
         description["scene"]["frames"][1] = end
 
     def _record(self, obj: bpy.types.Object, description: dict[str, Any]) -> dict[str, Any]:
-        record = settings.record(obj, description)
+        record = settings.record(obj, description, fields.record(obj, self._scene()))
         kept = self.options.frames
         first = kept[0] if kept else description["scene"]["frames"][0]
         return {**record, "first": first, "end": self.end, "is_part": kept is not None}
@@ -162,9 +166,10 @@ class Bake:
         files = self.options.files or cache.own_files(obj)
         return Store(files, plan, rows, keeps_previous=self.options.files is None)
 
-    def _pose(self, frame: int, is_pinned: bool, met: Colliders) -> Pose:
+    def _pose(self, frame: int, is_pinned: bool, met: Colliders, pushing: Fields) -> Pose:
         depsgraph = self._go_to(frame)
-        return sampling.pose(self._object(), depsgraph, is_pinned, met.targets(depsgraph))
+        targets, forces = met.targets(depsgraph), pushing.sample(depsgraph)
+        return sampling.pose(self._object(), depsgraph, is_pinned, targets, forces)
 
     def _attach(self, record: dict[str, Any]) -> None:
         """Play what is there, if it is the object's own cache; a folder elsewhere is left alone."""

@@ -11,7 +11,7 @@ from .. import native
 from ..core import mesh_check, points, scene_json
 from ..core.mesh_check import Problem, Severity
 from ..core.refusal import Refusal
-from . import animation, cache, mesh_arrays, rest, sampling, settings, slot
+from . import animation, cache, fields, mesh_arrays, rest, sampling, settings, slot
 
 SAMPLED_ONCE = (
     "stretch", "shear", "bend", "damping", "damping_stretch", "damping_shear", "damping_bend",
@@ -143,11 +143,7 @@ def _unsupported(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Prob
     """What a scene may hold and this version leaves out: said, never silently ignored."""
     if any(modifier.type == "CLOTH" for modifier in obj.modifiers):
         yield _warning(f'"{obj.name}" has a Cloth modifier, too: remove one of the two')
-    fields = [o.name for o in scene.objects if o.field is not None and o.field.type != "NONE"]
-    if fields:
-        yield _warning(
-            f'"{obj.name}": force fields are not supported yet, so "{fields[0]}" has no effect on it'
-        )
+    yield from (_warning(sentence) for sentence in fields.unsupported(obj, scene))
 
 
 def _error(sentence: str) -> Problem:

@@ -9,6 +9,7 @@ import bpy
 from .._identifiers import TARGET_ATTRIBUTE
 from ..core import points
 from ..core.bake import Pose
+from ..core.fields import Forces
 from ..core.points import Affine, Points
 from ..core.refusal import Refusal
 from . import mesh_arrays, rest, slot
@@ -72,13 +73,15 @@ def pose(
     depsgraph: bpy.types.Depsgraph,
     with_pins: bool,
     colliders: Sequence[Points] = (),
+    forces: Forces | None = None,
 ) -> Pose:
-    """The pose of a cloth at the depsgraph's frame, where its colliders stand so (m, world space)."""
+    """The pose of a cloth at the depsgraph's frame, where its colliders stand so (m, world space) and this pushes."""
     matrix = object_matrix(obj, depsgraph)
     to_object = inverse(obj, matrix)
     if not with_pins:
-        return Pose(None, to_object, colliders)
-    return Pose(points.transform(targets(obj, depsgraph), matrix, "d"), to_object, colliders)
+        return Pose(None, to_object, colliders, forces)
+    pins = points.transform(targets(obj, depsgraph), matrix, "d")
+    return Pose(pins, to_object, colliders, forces)
 
 
 def refuse_other_count(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:

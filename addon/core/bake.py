@@ -17,6 +17,7 @@ from typing import Any, NamedTuple, Protocol
 
 from . import checkpoint_file, points, quantity, report, vertex_file
 from .cache_paths import CacheFiles
+from .fields import Forces
 from .pc2 import Writer
 from .points import Affine, Points
 from .quantity import Numbers
@@ -33,6 +34,8 @@ class Simulation(Protocol):
 
     def set_pin_targets(self, cloth: int, targets: Points) -> None: ...
     def set_collider_targets(self, collider: int, targets: Points) -> None: ...
+    def set_gravity(self, gravity: tuple[float, float, float]) -> None: ...
+    def set_fields(self, fields: str) -> None: ...
     def advance(self) -> dict[str, Any]: ...
     def certificate(self) -> dict[str, Any]: ...
     def read_positions(self, cloth: int, out: Points) -> None: ...
@@ -44,19 +47,29 @@ class Simulation(Protocol):
 
 
 class Pose(NamedTuple):
-    """What the scene says of a frame: where pins and colliders go (m, world space) and world to object space."""
+    """What the scene says of a frame: where pins and colliders go (m, world space), world to object space, and forces."""
 
     targets: Points | None
     """For all vertices; None without pins."""
     to_object: Affine
     colliders: Sequence[Points] = ()
+    forces: Forces | None = None
+    """None where gravity stays as it is and there are no fields."""
 
     def aim(self, simulation: Simulation) -> None:
-        """Tell a simulation where pins and colliders go in the next frame."""
+        """Tell a simulation where pins and colliders go in the next frame, and what pushes."""
+        push(simulation, self.forces)
         if self.targets is not None:
             simulation.set_pin_targets(0, self.targets)
         for number, targets in enumerate(self.colliders):
             simulation.set_collider_targets(number, targets)
+
+
+def push(simulation: Simulation, forces: Forces | None) -> None:
+    """Tell a simulation what pushes from now on."""
+    if forces is not None:
+        simulation.set_gravity(forces.gravity)
+        simulation.set_fields(forces.fields)
 
 
 class Plan(NamedTuple):

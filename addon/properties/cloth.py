@@ -8,6 +8,7 @@ from .._identifiers import POINTER
 from .cache import CacheProperties
 from .changes import FIXED, OVERRIDABLE, switched
 from .collisions import CollisionProperties
+from .field_weights import FieldWeightProperties
 from .forces import ForceProperties
 from .shape import ShapeProperties
 from .solver import SolverProperties
@@ -19,6 +20,7 @@ class BOUCLE_PG_cloth(
     ShapeProperties,
     CollisionProperties,
     ForceProperties,
+    FieldWeightProperties,
     SolverProperties,
     CacheProperties,
     PropertyGroup,

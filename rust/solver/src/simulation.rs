@@ -1,6 +1,7 @@
 //! A simulation as the outside holds it: cloths that move frame by frame.
 
 mod contact;
+mod forces;
 mod placing;
 mod plan;
 mod saving;
@@ -263,6 +264,7 @@ impl Simulation {
             perturb(&mut self.state, &self.cloths, self.settings.perturbation);
         }
         self.pins.start(&mut self.state, duration);
+        self.system.air.start_frame(self.frame, h, self.method.is_implicit());
         let Self { system, pins, contacts, limits, state, method, threads, .. } = self;
         let stride =
             plan::stride(method, contacts.longest_way(&state.velocity, duration), substeps);

@@ -66,6 +66,7 @@ class Panels:
     OBJECT_COLLISIONS = "BOUCLE_PT_object_collisions"
     SELF_COLLISIONS = "BOUCLE_PT_self_collisions"
     FORCES = "BOUCLE_PT_forces"
+    FIELD_WEIGHTS = "BOUCLE_PT_field_weights"
     SOLVER = "BOUCLE_PT_solver"
     SOLVER_ADVANCED = "BOUCLE_PT_solver_advanced"
     CACHE = "BOUCLE_PT_cache"

@@ -21,6 +21,7 @@ from ..core.store import Plan, Store, Stores
 from . import (
     cache,
     colliders,
+    fields,
     live,
     preflight,
     registry,
@@ -31,6 +32,7 @@ from . import (
     slot,
     vertex_attributes,
 )
+from .fields import Fields
 
 
 @dataclass(frozen=True)
@@ -114,6 +116,7 @@ class Bake:
         description = self._describe(cloths, scene)
         self._restrict(description)
         met = colliders.Colliders(cloths, scene, self._depsgraph_of(cloths[0]))
+        pushing = Fields(cloths[0], scene)
         meshes = [simulation.mesh(obj, self._rest(obj)) for obj in cloths]
         make = simulation.maker(description, meshes, self.options.threads, met.arrays)
         build = Step(start, make)
@@ -127,7 +130,7 @@ class Bake:
         def moment_at(frame: int) -> Moment:
             if frame < self._began[1]:
                 self._began = (time.monotonic(), frame)
-            return self._moment(frame, is_pinned, met)
+            return self._moment(frame, is_pinned, met, pushing)
 
         try:
             yield from core_bake.bake(
@@ -182,7 +185,7 @@ class Bake:
         for obj in cloths:
             if len(cloths) > 1:
                 description = settings.describe(obj, scene, with_groups=True)
-            record = settings.record(obj, description)
+            record = settings.record(obj, description, fields.record(obj, scene))
             first = kept[0] if kept else obj.boucle.frame_start
             record.update(first=first, end=self.end, is_part=kept is not None)
             if len(cloths) > 1:
@@ -231,14 +234,17 @@ class Bake:
             rows.head["together"] = self.names
         return rows
 
-    def _moment(self, frame: int, is_pinned: Sequence[bool], met: colliders.Colliders) -> Moment:
+    def _moment(
+        self, frame: int, is_pinned: Sequence[bool], met: colliders.Colliders, pushing: Fields
+    ) -> Moment:
         self._go_to(frame)
         cloths = self._objects()
         poses = [
             sampling.pose(obj, self._depsgraph_of(obj), pinned)
             for obj, pinned in zip(cloths, is_pinned, strict=True)
         ]
-        return Moment(poses, met.targets(self._depsgraph_of(cloths[0])))
+        depsgraph = self._depsgraph_of(cloths[0])
+        return Moment(poses, met.targets(depsgraph), pushing.sample(depsgraph))
 
     def _attach(self) -> None:
         """Play what is there, if it is the objects' own caches; a folder elsewhere is left alone."""

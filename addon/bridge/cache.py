@@ -13,7 +13,7 @@ from ..core import cache_paths, drift, pc2, report
 from ..core.cache_paths import CacheFiles
 from ..core.progress import size
 from ..core.refusal import Refusal, cannot_write
-from . import registry, runtime, settings, slot
+from . import fields, registry, runtime, settings, slot
 
 
 def absolute(obj: bpy.types.Object, path: str) -> str:
@@ -171,10 +171,11 @@ def _own_drift(
         description = settings.describe(obj, scene, with_groups=in_full)
     except Refusal as refusal:
         return [str(refusal)]
+    pushing = fields.record(obj, scene)
     if in_full:
-        now = settings.record(obj, description)
+        now = settings.record(obj, description, pushing)
     else:
-        now = drift.record(description, len(obj.data.vertices), "")
+        now = drift.record(description, len(obj.data.vertices), "", pushing)
     return drift.differences(then, now)
 
 

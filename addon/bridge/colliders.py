@@ -45,6 +45,13 @@ def find(cloth: bpy.types.Object, scene: bpy.types.Scene) -> list[bpy.types.Obje
     if found and wanted is not None:
         inside = set(wanted.all_objects)
         found = [obj for obj in found if obj in inside]
+    return evaluated_for(cloth, scene, found)
+
+
+def evaluated_for(
+    cloth: bpy.types.Object, scene: bpy.types.Scene, found: list[bpy.types.Object]
+) -> list[bpy.types.Object]:
+    """Those of some objects that Blender evaluates in the view layer of a cloth, by their names."""
     if not found:
         return []
     layer = registry.layer_of(cloth, scene)

@@ -19,7 +19,7 @@ import bpy
 
 from .. import native
 from ..core import drift, points, quantity, scene_json, settle
-from ..core.bake import Moment
+from ..core.bake import Moment, push
 from ..core.live_frames import Action, Frame, LiveFrames
 from ..core.points import Points
 from ..core.progress import size
@@ -29,6 +29,7 @@ from . import (
     cache,
     colliders,
     display,
+    fields,
     registry,
     rest,
     runtime,
@@ -39,6 +40,7 @@ from . import (
 )
 from . import slot as slots
 from .colliders import Colliders
+from .fields import Fields
 
 EDITING_MODES = frozenset({"EDIT", "SCULPT", "WEIGHT_PAINT"})
 """Modes in which the artist works on the rest shape or on the pins."""
@@ -54,6 +56,7 @@ class Session:
     frames: LiveFrames
     is_pinned: bool
     colliders: Colliders
+    fields: Fields
     display: display.Display
     basis: tuple[object, ...]
     """What must not change while the session lives; looked at at every frame."""
@@ -157,6 +160,8 @@ def _build(
     met = Colliders([obj], scene, depsgraph)
     world = points.transform(local, matrix, "d")
     solver = simulation.maker(description, [simulation.mesh(obj, world)], colliders=met.arrays)()
+    pushing = Fields(obj, scene)
+    push(solver, pushing.sample(depsgraph))
     limit = memory_limit()
     if settle.run(solver, scene_json.settling(description), [len(obj.data.vertices)]):
         local = _read(solver, to_object, len(obj.data.vertices))
@@ -168,6 +173,7 @@ def _build(
         frames=LiveFrames(obj.boucle.frame_start, first, limit),
         is_pinned=simulation.is_pinned(description, 0),
         colliders=met,
+        fields=pushing,
         display=shown,
         basis=_basis(obj, scene),
         settings=_settings_digest(obj, scene),
@@ -191,6 +197,7 @@ def _basis(obj: bpy.types.Object, scene: bpy.types.Scene) -> tuple[object, ...]:
         settings.world(scene),
         display.may_write(obj),
         colliders.signature(obj, scene),
+        fields.signature(obj, scene),
     )
 
 
@@ -200,7 +207,7 @@ def _settings_digest(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
         description = settings.describe(obj, scene, with_groups=False)
     except Refusal:
         return ""
-    return drift.whole_digest(drift.record(description, 0, ""))
+    return drift.whole_digest(drift.record(description, 0, "", fields.record(obj, scene)))
 
 
 def _valid_session(obj: bpy.types.Object, scene: bpy.types.Scene) -> Session | None:
@@ -219,13 +226,14 @@ def _step(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgrap
         return
     try:
         targets = session.colliders.targets(depsgraph)
+        forces = session.fields.sample(depsgraph)
         pose = sampling.pose(obj, depsgraph, session.is_pinned)
     except Refusal as refusal:
         session.waits = session.refusal = str(refusal)
         return
     session.refusal = ""
     try:
-        Moment([pose], targets).aim(session.solver)
+        Moment([pose], targets, forces).aim(session.solver)
         certificate = session.solver.advance()
         positions = _read(session.solver, pose.to_object, len(obj.data.vertices))
         session.frames.add(Frame(positions, certificate, _read_numbers(session.solver, obj)))

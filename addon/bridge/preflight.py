@@ -10,7 +10,18 @@ from .. import native
 from ..core import mesh_check, points, scene_json
 from ..core.mesh_check import Problem, Severity
 from ..core.refusal import Refusal
-from . import animation, cache, crossing, mesh_arrays, rest, sampling, settings, setup_check, slot
+from . import (
+    animation,
+    cache,
+    crossing,
+    fields,
+    mesh_arrays,
+    rest,
+    sampling,
+    settings,
+    setup_check,
+    slot,
+)
 
 SAMPLED_ONCE = (
     "stretch", "shear", "bend", "damping", "damping_stretch", "damping_shear", "damping_bend",
@@ -121,11 +132,7 @@ def _unsupported(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Prob
     """What a scene may hold and this version leaves out: said, never silently ignored."""
     if any(m.type == "CLOTH" and (m.show_viewport or m.show_render) for m in obj.modifiers):
         yield _warning(f'"{obj.name}" has a Cloth modifier, too: remove one of the two')
-    fields = [o.name for o in scene.objects if o.field is not None and o.field.type != "NONE"]
-    if fields:
-        yield _warning(
-            f'"{obj.name}": force fields are not supported yet, so "{fields[0]}" has no effect on it'
-        )
+    yield from (_warning(sentence) for sentence in fields.unsupported(obj, scene))
 
 
 def _error(sentence: str) -> Problem:

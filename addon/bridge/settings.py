@@ -80,10 +80,13 @@ def describe(
     return scene_json.describe(obj.name, values(obj), world(scene), found, things, bool(others))
 
 
-def record(obj: bpy.types.Object, description: dict[str, Any]) -> dict[str, Any]:
-    """What a bake with this description remembers of its cloth."""
+def record(
+    obj: bpy.types.Object, description: dict[str, Any], fields: dict[str, Any]
+) -> dict[str, Any]:
+    """What a bake with this description and these force fields remembers of its cloth."""
     mesh = obj.data
-    return drift.record(description, len(mesh.vertices), mesh_arrays.topology(mesh).digest())
+    topology = mesh_arrays.topology(mesh).digest()
+    return drift.record(description, len(mesh.vertices), topology, fields)
 
 
 def _vertices(obj: bpy.types.Object, label: str, name: str, threshold: float) -> list[int] | None:

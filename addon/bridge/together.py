@@ -8,7 +8,7 @@ import bpy
 
 from ..core import joint
 from ..core.refusal import Refusal
-from . import cache, colliders, registry, settings
+from . import cache, colliders, fields, registry, settings
 
 
 def groups(
@@ -17,8 +17,8 @@ def groups(
     """Cloths sorted into groups, and why some that could meet are in different ones.
 
     Cloths meet if both have Object Collisions on and each is in the other's Collision Collection, if that is set. They are
-    baked together if they begin at the same frame and their solver settings are the same, but for the quality: the
-    finest counts.
+    baked together if they begin at the same frame, feel the same fields, and their solver settings are the same, but for
+    the quality: the finest counts.
     """
     by_name = {obj.name: obj for obj in cloths}
     described, alone = [], []
@@ -33,7 +33,8 @@ def groups(
         layers = [registry.layer_of(obj, scene) for obj in pair]
         return layers[0] == layers[1] and colliders.meet(*pair)
 
-    found = joint.groups(described, meet)
+    pushed = {name: fields.shared(obj, scene) for name, obj in by_name.items()}
+    found = joint.groups(described, meet, pushed)
     together = [*found.together, *([name] for name in alone)]
     return [[by_name[name] for name in group] for group in together], found.apart
 

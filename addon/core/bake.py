@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple, Protocol
 
 from . import points, quantity
+from .fields import Forces
 from .points import Affine, Points
 from .quantity import Numbers
 from .settle import Settle
@@ -28,6 +29,8 @@ class Simulation(Protocol):
 
     def set_pin_targets(self, cloth: int, targets: Points) -> None: ...
     def set_collider_targets(self, collider: int, targets: Points) -> None: ...
+    def set_gravity(self, gravity: tuple[float, float, float]) -> None: ...
+    def set_fields(self, fields: str) -> None: ...
     def advance(self) -> dict[str, Any]: ...
     def certificate(self, cloth: int | None = None) -> dict[str, Any]: ...
     def set_positions(self, cloth: int, positions: Points) -> None: ...
@@ -57,13 +60,23 @@ class Moment(NamedTuple):
 
     poses: Sequence[Pose]
     colliders: Sequence[Points] = ()
+    forces: Forces | None = None
+    """None where gravity stays as it is and there are no fields."""
 
     def aim(self, simulation: Simulation) -> None:
-        """Tell a simulation what goes where in the next frame."""
+        """Tell a simulation what goes where in the next frame, and what pushes."""
+        push(simulation, self.forces)
         for cloth, pose in enumerate(self.poses):
             pose.aim(simulation, cloth)
         for number, targets in enumerate(self.colliders):
             simulation.set_collider_targets(number, targets)
+
+
+def push(simulation: Simulation, forces: Forces | None) -> None:
+    """Tell a simulation what pushes from now on."""
+    if forces is not None:
+        simulation.set_gravity(forces.gravity)
+        simulation.set_fields(forces.fields)
 
 
 class Buffers(NamedTuple):
@@ -145,6 +158,7 @@ def bake(
     try:
         if not (resume and stores.resume(simulation)):
             moment = moment_at(plan.start)
+            push(simulation, moment.forces)
             yield from _settle(simulation, stores, moment)
             stores.begin()
             begin = Step(plan.start, lambda: _read(simulation, simulation.certificate(), buffers))

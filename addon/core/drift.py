@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 from .points import Points
@@ -31,6 +32,10 @@ _VERTICES = {
 """Lists of vertices by the end of their key."""
 
 
+_NAMED = ("collider ", "force field ", "field weights")
+"""Beginnings of the keys that are words as they stand."""
+
+
 def digest(*parts: Points | bytes) -> str:
     """A 64-bit digest of buffers, as 16 hexadecimal digits."""
     state = hashlib.blake2b(digest_size=8)
@@ -41,9 +46,14 @@ def digest(*parts: Points | bytes) -> str:
     return state.hexdigest()
 
 
-def record(scene: Mapping[str, Any], vertices: int, topology: str) -> dict[str, Any]:
-    """What a bake remembers of its cloth: settings one by one, long lists as a digest."""
-    settings: dict[str, Any] = {}
+def record(
+    scene: Mapping[str, Any],
+    vertices: int,
+    topology: str,
+    fields: Mapping[str, Any] = MappingProxyType({}),
+) -> dict[str, Any]:
+    """What a bake remembers of its cloth: settings one by one, long lists as a digest, and force fields by their names."""
+    settings: dict[str, Any] = dict(fields)
     _flatten({key: scene[key] for key in scene if key != "collider"}, "", settings)
     for thing in scene.get("collider", []):
         settings[f'collider "{thing["name"]}"'] = [thing["thickness"], thing["friction"]]
@@ -89,7 +99,7 @@ def _is_left_out(key: str, settings: Mapping[str, Any]) -> bool:
 
 
 def _words(key: str) -> str:
-    if key.startswith("collider "):
+    if key.startswith(_NAMED):
         return key
     if _list_words(key):
         return _list_words(key)

@@ -55,8 +55,16 @@ def join(scenes: Sequence[Scene], meets: Callable[[str, str], bool]) -> dict[str
     return {**rest, **{key: part for key, part in parts.items() if part}}
 
 
-def groups(scenes: Sequence[Scene], meets: Callable[[str, str], bool]) -> Groups:
-    """Sort cloths into groups: those that meet, directly or by way of others, and whose settings fit each other."""
+def groups(
+    scenes: Sequence[Scene], meets: Callable[[str, str], bool], pushed: Mapping[str, str]
+) -> Groups:
+    """Sort cloths into groups: those that meet, directly or by way of others, and whose settings fit each other.
+
+    Args:
+        scenes: The descriptions, one cloth each.
+        meets: Whether two cloths, by their names, collide with each other.
+        pushed: What pushes each, by its name: the same for cloths that can be simulated together.
+    """
     names = [scene["cloth"][0]["name"] for scene in scenes]
     by_name = dict(zip(names, scenes, strict=True))
     group_of = {name: [name] for name in names}
@@ -66,6 +74,8 @@ def groups(scenes: Sequence[Scene], meets: Callable[[str, str], bool]) -> Groups
             if not meets(one, other):
                 continue
             difference = _difference(by_name[one], by_name[other])
+            if not difference and pushed[one] != pushed[other]:
+                difference = "force fields or field weights"
             if difference:
                 apart.append(
                     f'"{one}" and "{other}" are baked one after the other and do not collide: '

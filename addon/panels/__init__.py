@@ -4,6 +4,7 @@ from . import (
     cache,
     cloth,
     collisions,
+    field_weights,
     forces,
     presets,
     problems,
@@ -26,6 +27,7 @@ _PARENTS = (
 """Blender wants them before their subpanels; where each stands is its `bl_order`."""
 
 _OTHERS = (
+    field_weights,
     presets,
     problems,
     result,

@@ -8,6 +8,7 @@ from .._identifiers import POINTER
 from .cache import CacheProperties
 from .changes import FIXED, OVERRIDABLE, switched
 from .collisions import CollisionProperties
+from .field_weights import BOUCLE_PG_field_weights, FieldWeightProperties
 from .forces import ForceProperties
 from .presets import PresetProperties
 from .problems import ProblemProperties
@@ -22,6 +23,7 @@ class BOUCLE_PG_cloth(
     ShapeProperties,
     CollisionProperties,
     ForceProperties,
+    FieldWeightProperties,
     SolverProperties,
     CacheProperties,
     PresetProperties,
@@ -38,7 +40,7 @@ class BOUCLE_PG_cloth(
     )  # fmt: skip
 
 
-CLASSES = (BOUCLE_PG_take, BOUCLE_PG_cloth)
+CLASSES = (BOUCLE_PG_field_weights, BOUCLE_PG_take, BOUCLE_PG_cloth)
 
 
 def attach() -> None:

@@ -110,6 +110,20 @@ class Simulation:
                 moves it itself (`motion`), the scene's targets hold.
         """
 
+    def set_fields(self, fields: str) -> None:
+        """Take these force fields in the place of those before, for all frames until they are told anew.
+
+        Args:
+            fields: A JSON list of tables with the keys of a scene's `[[force]]`, of any kind but "wind". Fields stand still
+                during a frame.
+
+        Raises:
+            SceneError: A key or a value is not accepted; the fields before then stay.
+        """
+
+    def set_gravity(self, gravity: tuple[float, float, float]) -> None:
+        """Take this gravity (m/s²) in the place of the one before, for all frames until it is told anew."""
+
     def release_pins(self, cloth: int, vertices: Sequence[int] | None = None) -> None:
         """Let pinned vertices (all if None) go, keeping their velocity."""
 

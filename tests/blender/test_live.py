@@ -414,7 +414,7 @@ def check_the_scene():
 
     obj = add_cloth()
     clean = bpy.ops.boucle.check(), obj.boucle.status
-    bpy.ops.object.effector_add(type="WIND")
+    bpy.ops.object.effector_add(type="TEXTURE")
     bpy.context.view_layer.objects.active = obj
     obj.vertex_groups["Pin"].add([0, 1], 0.3, "REPLACE")
     obj.boucle.keyframe_insert("stretch", frame=1)
@@ -431,7 +431,7 @@ def test_what_is_left_out_is_said_by_the_check(blender):
     assert selected == [0, 1]
     assert baked == ["FINISHED"]
     for words in (
-        "force fields are not supported yet",
+        "Texture fields are not supported",
         "has a Cloth modifier, too",
         "soft pins are not supported yet",
         "stretch is animated",

@@ -1,5 +1,7 @@
 //! The class `Simulation`.
 
+use boucle_geometry::Vector;
+use boucle_scene::description::fields_from_json;
 use boucle_scene::report::FrameRow;
 use boucle_scene::{Assembly, Error, Scene};
 use boucle_solver::{Cloth, Collider};
@@ -136,6 +138,15 @@ impl Simulation {
         let targets = buffers::positions(targets, "targets", Some(count))?;
         buffers::check_finite(py, &targets, 0..count, "targets")?;
         self.with(py, |assembly| Ok(assembly.simulation.set_collider_targets(index, &targets)?))
+    }
+
+    fn set_fields(&mut self, py: Python<'_>, fields: &str) -> PyResult<()> {
+        let fields = compute(py, || fields_from_json(fields))?;
+        self.with(py, |assembly| Ok(assembly.simulation.set_fields(fields)?))
+    }
+
+    fn set_gravity(&mut self, py: Python<'_>, gravity: [f64; 3]) -> PyResult<()> {
+        self.with(py, |assembly| Ok(assembly.simulation.set_gravity(Vector::from(gravity))?))
     }
 
     #[pyo3(signature = (cloth, vertices = None))]

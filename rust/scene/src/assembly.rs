@@ -1,10 +1,10 @@
 //! From a scene and rest meshes to a simulation whose pins and colliders follow the scene.
 
-use boucle_geometry::{Aabb, Mesh, Vector};
-use boucle_solver::{Certificate, Cloth, Region, Settings, Simulation, Wind};
+use boucle_geometry::{Mesh, Vector};
+use boucle_solver::{Certificate, Cloth, Settings, Simulation};
 
 use crate::collider::{ColliderTrack, RestCollider};
-use crate::description::{Choice, ClothDescription, Force, Grid, RegionDescription, Scene};
+use crate::description::{Choice, ClothDescription, Grid, Scene};
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::pins::PinTrack;
@@ -64,13 +64,17 @@ impl Assembly {
             .zip(colliders)
             .map(|(description, rest)| ColliderTrack::new(description, rest, first_frame))
             .unzip();
-        let forces = scene.force.iter().enumerate();
-        let winds = forces
-            .map(|(index, force)| wind(force, &scene.cloth, &format!("force.{index}")))
-            .collect::<Result<_>>()?;
+        let names: Vec<&str> = scene.cloth.iter().map(|cloth| cloth.name.as_str()).collect();
+        let (mut winds, mut fields) = (Vec::new(), Vec::new());
+        for (index, force) in scene.force.iter().enumerate() {
+            let at = format!("force.{index}");
+            winds.extend(force.wind(&at, &names)?);
+            fields.extend(force.field(&at)?);
+        }
         let mut simulation =
             Simulation::with_colliders(cloths, colliders, winds, settings(scene, threads))
                 .map_err(solver)?;
+        simulation.set_fields(fields).map_err(solver)?;
         for (index, description) in scene.cloth.iter().enumerate() {
             let velocity = Vector::from(description.velocity);
             if velocity.norm_squared() > 0.0 {
@@ -156,30 +160,6 @@ fn cloth(
         other => Error::from(other),
     })?;
     Ok(Cloth { collision, ..cloth })
-}
-
-fn wind(force: &Force, cloths: &[ClothDescription], at: &str) -> Result<Wind> {
-    let region = match &force.region {
-        None => Region::Everywhere,
-        Some(region) => match &region.r#box {
-            Some([min, max]) => {
-                Region::Box(Aabb { min: Vector::from(*min), max: Vector::from(*max) })
-            }
-            None => region_of_vertices(region, cloths),
-        },
-    };
-    Ok(Wind { velocity: Vector::from(force.velocity), law: force.law(at)?, region })
-}
-
-fn region_of_vertices(region: &RegionDescription, cloths: &[ClothDescription]) -> Region {
-    let vertices = region.vertices.clone();
-    match &region.cloth {
-        None => Region::Vertices(vertices.unwrap_or_default()),
-        Some(name) => {
-            let number = cloths.iter().position(|cloth| cloth.name == *name);
-            Region::Cloth(number.unwrap_or(cloths.len()) as u32, vertices)
-        }
-    }
 }
 
 /// The solver's refusals of a step, told with the table they come from.

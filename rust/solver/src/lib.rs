@@ -47,7 +47,9 @@ pub use collider::{Collider, Shape};
 pub use collision::Collision;
 pub use contact::Detection;
 pub use error::{Error, Result};
-pub use force::{Region, Wind, WindLaw};
+pub use force::{
+    Falloff, FalloffShape, Field, FieldKind, FieldShape, Range, Region, Side, Wind, WindLaw,
+};
 pub use law::{Spring, springs_of_mesh};
 pub use material::{DampingLaw, Limiter, SpringKind, SpringMaterial, StiffnessFrom};
 pub use overstretch::OverstretchedEdge;

@@ -2,6 +2,7 @@
 
 mod certifying;
 mod contact;
+mod forces;
 mod interrupt;
 mod placing;
 mod plan;
@@ -276,6 +277,7 @@ impl Simulation {
             perturb(&mut self.state, &self.cloths, self.settings.perturbation);
         }
         self.pins.start(&mut self.state, duration);
+        self.system.air.start_frame(self.frame, h, self.method.is_implicit());
         let Self { system, pins, contacts, limits, state, method, threads, interrupter, .. } = self;
         let stride =
             plan::stride(method, contacts.longest_way(&state.velocity, duration), substeps);

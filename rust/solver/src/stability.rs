@@ -85,9 +85,9 @@ impl Spectrum {
         }
     }
 
-    /// The same with so much more damping (1/s).
-    pub(crate) fn damped(self, damping: f64) -> Self {
-        Self { damping: self.damping + damping, ..self }
+    /// The same with so much more damping (1/s) and stiffness by mass (1/s²).
+    pub(crate) fn with(self, damping: f64, w_squared: f64) -> Self {
+        Self { damping: self.damping + damping, w_squared: self.w_squared + w_squared, ..self }
     }
 
     /// The largest stable step (s) up to `longest`.

@@ -1,7 +1,7 @@
 //! The forces on all particles, and the one way to use them: all are computed before any particle moves.
 //!
 //! ```text
-//! a_i = g + (sum of springs + wind - ka v_i) / m_i       (m/s²)     for a particle that is free
+//! a_i = g + (sum of springs + wind and fields - ka v_i) / m_i       (m/s²)     for a particle that is free
 //! a_i = 0                                                           for one that is pinned
 //! ```
 

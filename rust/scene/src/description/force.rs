@@ -1,11 +1,13 @@
-//! `[[force]]`: what pushes the cloth besides gravity. Wind, for now.
+//! `[[force]]`: what pushes the cloth besides gravity. Wind, and force fields ([`super::field`]).
 
-use boucle_solver::WindLaw;
+use boucle_geometry::{Aabb, Vector};
+use boucle_solver::{Field, FieldShape, Region, Wind, WindLaw};
 use serde::{Deserialize, Serialize};
 use toml::Value;
 
 use super::check_known;
 use super::choice::Choice;
+use super::field::{FalloffDescription, field_of};
 use super::table;
 use crate::error::{Error, Result};
 use crate::limits;
@@ -15,22 +17,56 @@ const MAX_COEFFICIENT: f64 = 1e6;
 /// Largest component of the wind's velocity (m/s).
 const MAX_SPEED: f64 = 1e4;
 
-/// One force.
+/// One force. Every kind has keys of its own.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Force {
     /// Which force.
     #[serde(deserialize_with = "Choice::read", serialize_with = "Choice::write")]
     pub kind: ForceKind,
-    /// Velocity (m/s) of the air.
-    pub velocity: [f64; 3],
-    /// The classic law by vertex normal (N·s/m).
+    /// Wind: velocity (m/s) of the air.
+    pub velocity: Option<[f64; 3]>,
+    /// Wind: the classic law by vertex normal (N·s/m).
     pub coefficient: Option<f64>,
-    /// Pressure on faces: density (kg/m³) of the air.
+    /// Wind: pressure on faces, by the density (kg/m³) of the air.
     pub air_density: Option<f64>,
-    /// Where it blows; everywhere if missing.
+    /// Where wind blows; everywhere if missing.
     #[serde(default, deserialize_with = "table::optional")]
     pub region: Option<RegionDescription>,
+    /// How strong a field is.
+    pub strength: Option<f64>,
+    /// Pressure (N/m²) of a field's strength of 1; 1 if missing.
+    pub pressure: Option<f64>,
+    /// Part of a field that is let through; 1 if missing.
+    pub weight: Option<f64>,
+    /// Drag: its part for each m/s. Harmonic: its damping.
+    pub damping: Option<f64>,
+    /// How a field slows what moves, less 1 for each m/s.
+    pub flow: Option<f64>,
+    /// Random part of a field's strength.
+    pub noise: Option<f64>,
+    /// Chooses the random numbers.
+    pub seed: Option<u32>,
+    /// Part of a field that acts along the cloth's normal alone.
+    pub wind_factor: Option<f64>,
+    /// Where a field stands (m); at the origin if missing.
+    pub location: Option<[f64; 3]>,
+    /// Its direction; upward if missing.
+    pub axis: Option<[f64; 3]>,
+    /// From where it acts.
+    #[serde(default, deserialize_with = "Choice::read", serialize_with = "Choice::write")]
+    pub shape: FieldShape,
+    /// How it fades.
+    #[serde(default, deserialize_with = "table::optional")]
+    pub falloff: Option<FalloffDescription>,
+    /// Point: divided by the square of the distance, too.
+    pub inverse_square: Option<bool>,
+    /// Turbulence: size (m) of the largest eddies.
+    pub size: Option<f64>,
+    /// Turbulence: eddies stay where they are when the field moves.
+    pub global: Option<bool>,
+    /// Harmonic: distance (m) without force.
+    pub rest_length: Option<f64>,
 }
 
 /// Which force.
@@ -38,11 +74,41 @@ pub struct Force {
 pub enum ForceKind {
     /// Moving air.
     Wind,
+    /// A field.
+    Field(FieldWord),
+}
+
+/// Which field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FieldWord {
+    /// Away from it.
+    Point,
+    /// Along its axis.
+    Wind,
+    /// Around its axis.
+    Vortex,
+    /// Any way.
+    Turbulence,
+    /// Against the velocity.
+    Drag,
+    /// Back to it.
+    Harmonic,
+    /// Across the velocity.
+    Magnetic,
 }
 
 impl Choice for ForceKind {
-    const WORDS: &'static [(&'static str, Self)] = &[("wind", Self::Wind)];
-    const LATER: &'static [&'static str] = &["drag", "turbulence", "vortex", "water", "point"];
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("wind", Self::Wind),
+        ("point", Self::Field(FieldWord::Point)),
+        ("wind_field", Self::Field(FieldWord::Wind)),
+        ("vortex", Self::Field(FieldWord::Vortex)),
+        ("turbulence", Self::Field(FieldWord::Turbulence)),
+        ("drag", Self::Field(FieldWord::Drag)),
+        ("harmonic", Self::Field(FieldWord::Harmonic)),
+        ("magnetic", Self::Field(FieldWord::Magnetic)),
+    ];
+    const LATER: &'static [&'static str] = &["water"];
 }
 
 /// Where a force acts: a box of the world, or a cloth, or vertices of that or of every cloth.
@@ -58,11 +124,32 @@ pub struct RegionDescription {
 }
 
 impl Force {
-    /// The wind's law as the solver takes it.
+    /// The steady wind that it is, as the solver takes it, among cloths of these names; `None` for a field.
     ///
     /// # Errors
-    /// When neither or both of `coefficient` and `air_density` are given.
-    pub fn law(&self, at: &str) -> Result<WindLaw> {
+    /// When its keys do not make one law.
+    pub fn wind(&self, at: &str, cloths: &[&str]) -> Result<Option<Wind>> {
+        if self.kind != ForceKind::Wind {
+            return Ok(None);
+        }
+        let Some(velocity) = self.velocity else {
+            return Err(Error::input(format!("{at}.velocity is missing")));
+        };
+        let region =
+            self.region.as_ref().map_or(Region::Everywhere, |region| region.region(cloths));
+        Ok(Some(Wind { velocity: Vector::from(velocity), law: self.law(at)?, region }))
+    }
+
+    /// The field that it is; `None` for a steady wind.
+    ///
+    /// # Errors
+    /// When a value is out of its domain.
+    pub fn field(&self, at: &str) -> Result<Option<Field>> {
+        let ForceKind::Field(word) = self.kind else { return Ok(None) };
+        field_of(word, self, at).map(Some)
+    }
+
+    fn law(&self, at: &str) -> Result<WindLaw> {
         match (self.coefficient, self.air_density) {
             (Some(coefficient), None) => Ok(WindLaw::Vertex { coefficient }),
             (None, Some(air_density)) => Ok(WindLaw::Face { air_density }),
@@ -76,8 +163,12 @@ impl Force {
     }
 
     pub(super) fn check(&self, at: &str, cloths: &[&str]) -> Result<()> {
-        limits::vector(&format!("{at}.velocity"), &self.velocity, MAX_SPEED, " m/s")?;
-        self.law(at)?;
+        self.refuse_foreign_keys(at)?;
+        self.field(at)?;
+        if let Some(velocity) = &self.velocity {
+            limits::vector(&format!("{at}.velocity"), velocity, MAX_SPEED, " m/s")?;
+        }
+        self.wind(at, cloths)?;
         let numbers = [("coefficient", self.coefficient), ("air_density", self.air_density)];
         for (key, value) in numbers {
             if let Some(value) = value {
@@ -88,9 +179,65 @@ impl Force {
         let region = self.region.as_ref();
         region.map_or(Ok(()), |region| region.check(&format!("{at}.region"), cloths))
     }
+
+    /// Refuses keys that forces of this kind do not have.
+    fn refuse_foreign_keys(&self, at: &str) -> Result<()> {
+        let given = self.keys();
+        match given.iter().find(|(_, is_given, is_known)| *is_given && !is_known) {
+            Some((key, ..)) => {
+                let known = given.iter().filter(|(.., is_known)| *is_known).map(|(key, ..)| *key);
+                let known = known.collect::<Vec<_>>().join(", ");
+                let kind = self.kind.word();
+                Err(Error::input(format!("{at}.{key} is no key of \"{kind}\"; accepted: {known}")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Every key but the kind: whether it is given, and whether forces of this kind have it.
+    fn keys(&self) -> [(&'static str, bool, bool); 20] {
+        use FieldWord::{Drag, Harmonic, Point, Turbulence};
+        let is_field = self.kind != ForceKind::Wind;
+        let is = |word| self.kind == ForceKind::Field(word);
+        [
+            ("velocity", self.velocity.is_some(), !is_field),
+            ("coefficient", self.coefficient.is_some(), !is_field),
+            ("air_density", self.air_density.is_some(), !is_field),
+            ("region", self.region.is_some(), !is_field),
+            ("strength", self.strength.is_some(), is_field),
+            ("pressure", self.pressure.is_some(), is_field),
+            ("weight", self.weight.is_some(), is_field),
+            ("noise", self.noise.is_some(), is_field),
+            ("seed", self.seed.is_some(), is_field),
+            ("wind_factor", self.wind_factor.is_some(), is_field),
+            ("location", self.location.is_some(), is_field),
+            ("axis", self.axis.is_some(), is_field),
+            ("shape", self.shape != FieldShape::Point, is_field),
+            ("falloff", self.falloff.is_some(), is_field),
+            ("flow", self.flow.is_some(), is_field && !is(Drag) && !is(Harmonic)),
+            ("damping", self.damping.is_some(), is(Drag) || is(Harmonic)),
+            ("inverse_square", self.inverse_square.is_some(), is(Point)),
+            ("size", self.size.is_some(), is(Turbulence)),
+            ("global", self.global.is_some(), is(Turbulence)),
+            ("rest_length", self.rest_length.is_some(), is(Harmonic)),
+        ]
+    }
 }
 
 impl RegionDescription {
+    fn region(&self, cloths: &[&str]) -> Region {
+        if let Some([min, max]) = self.r#box {
+            return Region::Box(Aabb { min: Vector::from(min), max: Vector::from(max) });
+        }
+        match &self.cloth {
+            None => Region::Vertices(self.vertices.clone().unwrap_or_default()),
+            Some(name) => {
+                let number = cloths.iter().position(|cloth| cloth == name);
+                Region::Cloth(number.unwrap_or(cloths.len()) as u32, self.vertices.clone())
+            }
+        }
+    }
+
     fn check(&self, at: &str, cloths: &[&str]) -> Result<()> {
         let of_cloth = self.vertices.is_some() || self.cloth.is_some();
         match (&self.r#box, of_cloth) {
@@ -123,7 +270,9 @@ pub(super) fn refuse_later_kinds(tree: &Value) -> Result<()> {
     for (index, force) in forces.into_iter().flatten().enumerate() {
         let kind = force.get("kind").and_then(Value::as_str).unwrap_or_default();
         if ForceKind::LATER.contains(&kind) {
-            let later = "is not supported yet; accepted: \"wind\"";
+            let words: Vec<String> =
+                ForceKind::WORDS.iter().map(|(word, _)| format!("\"{word}\"")).collect();
+            let later = format!("is not supported yet; accepted: {}", words.join(", "));
             return Err(Error::input(format!("force.{index}.kind = \"{kind}\" {later}")));
         }
     }

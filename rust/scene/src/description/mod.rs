@@ -8,6 +8,7 @@ mod choice;
 mod cloth;
 mod collider;
 mod collision;
+mod field;
 mod force;
 mod pins;
 mod solver;
@@ -19,11 +20,13 @@ pub use choice::{FabricKeys, Later, LaterKeys, NotYet, TearKeys};
 pub use cloth::{ClothDescription, Grid, Plane, Springs, Transform, UpAxis};
 pub use collider::{Capsule, ColliderDescription, Cuboid, HalfSpace, Sphere};
 pub use collision::{ClothCollision, CollisionDescription};
-pub use force::{Force, RegionDescription};
+pub use field::FalloffDescription;
+pub use force::{FieldWord, Force, ForceKind, RegionDescription};
 pub use pins::{Keyframe, PinGroup, Pins};
 pub use solver::{SolverDescription, Substeps};
 pub(crate) use tree::joined;
 
+use boucle_solver::Field;
 use serde::{Deserialize, Serialize};
 use toml::Value;
 
@@ -55,6 +58,33 @@ pub struct Scene {
     pub collider: Vec<ColliderDescription>,
     /// `[tear]`, for later.
     pub tear: Option<Later<TearKeys>>,
+}
+
+/// Force fields out of a JSON list of tables with the keys of `[[force]]`: what a scene changes from frame to frame.
+///
+/// # Errors
+/// [`Error::Input`] for the first thing that is wrong, and for a force that is no field.
+pub fn fields_from_json(text: &str) -> Result<Vec<Field>> {
+    let json: serde_json::Value = serde_json::from_str(text)
+        .map_err(|error| Error::input(format!("the fields are not JSON: {error}")))?;
+    let mut tree = toml::Table::new();
+    tree.insert("force".to_owned(), tree_of_json("force", &json)?);
+    let table::Table(Forces { force }) = tree::typed(&Value::Table(tree))?;
+    let fields = force.iter().enumerate().map(|(index, force)| {
+        let at = format!("force.{index}");
+        force.check(&at, &[])?;
+        let steady = "is a steady wind, which a scene keeps; accepted: fields";
+        force.field(&at)?.ok_or_else(|| Error::input(format!("{at}.kind = \"wind\" {steady}")))
+    });
+    fields.collect()
+}
+
+/// The forces of a scene alone.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Forces {
+    #[serde(deserialize_with = "table::list")]
+    force: Vec<Force>,
 }
 
 /// `[scene]`: when, and under which gravity.

@@ -17,6 +17,8 @@ use rayon::prelude::*;
 
 use crate::cloth::Cloth;
 use crate::error::{Error, Result};
+use crate::force::field::Field;
+use crate::force::fields::{Fields, Pushed};
 use crate::kernel::{CHUNK, ChunkVectors};
 use crate::material::at_least_zero;
 use crate::state::State;
@@ -112,10 +114,11 @@ impl Wind {
 /// A wind, and for regions of vertices whether it blows on each particle.
 type Blowing = (Wind, Option<Vec<bool>>);
 
-/// All winds, and what they need to know of the meshes.
+/// All winds and fields, and what they need to know of the meshes.
 #[derive(Debug)]
 pub(crate) struct Air {
     winds: Vec<Blowing>,
+    fields: Fields,
     /// Corners of all faces, in the simulation's numbering.
     face_starts: Vec<u32>,
     corners: Vec<u32>,
@@ -124,19 +127,21 @@ pub(crate) struct Air {
     faces_of: Vec<u32>,
 }
 
-/// What the air does to each face in the present state.
+/// What the air does to each face in the present state, and fields to each particle.
 #[derive(Debug, Default)]
 pub(crate) struct AirScratch {
     faces: Vec<FaceAir>,
+    /// Empty where there are no fields.
+    pushed: Vec<Pushed>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
-struct FaceAir {
+pub(super) struct FaceAir {
     /// Unit normal, or zero for a face without area.
-    normal: Vector,
-    area: f64,
+    pub(super) normal: Vector,
+    pub(super) area: f64,
     velocity: Vector,
-    corner_share: f64,
+    pub(super) corner_share: f64,
 }
 
 impl Air {
@@ -166,11 +171,29 @@ impl Air {
             let mask = vertex_mask(&wind.region, cloths);
             (wind, mask)
         });
-        Self { winds: winds.collect(), face_starts, corners, particle_starts, faces_of }
+        let masses = cloths.iter().flat_map(|cloth| cloth.masses.iter().copied());
+        Self {
+            winds: winds.collect(),
+            fields: Fields::new(masses.collect()),
+            face_starts,
+            corners,
+            particle_starts,
+            faces_of,
+        }
     }
 
     pub(crate) fn is_still(&self) -> bool {
-        self.winds.is_empty()
+        self.winds.is_empty() && self.fields.is_empty()
+    }
+
+    /// Takes these fields in the place of those before.
+    pub(crate) fn set_fields(&mut self, fields: Vec<Field>) {
+        self.fields.set(fields);
+    }
+
+    /// Begins a frame of steps of h seconds.
+    pub(crate) fn start_frame(&mut self, frame: i32, h: f64, is_implicit: bool) {
+        self.fields.start(frame, h, is_implicit);
     }
 
     /// Largest damping (N·s/m) that the classic law puts on a particle.
@@ -193,24 +216,40 @@ impl Air {
         coefficients(None) + own.fold(0.0, f64::max)
     }
 
-    /// Damping (N·s/m) that winds put on a particle, at most; faces as they were last observed.
+    /// Stiffness (N/m) with which fields hold a particle, at most; as it was last observed.
+    pub(crate) fn stiffness_of(&self, particle: usize, scratch: &AirScratch) -> f64 {
+        scratch.pushed.get(particle).map_or(0.0, |pushed| pushed.stiffness)
+    }
+
+    /// Damping (N·s/m) that winds and fields put on a particle, at most; as they were last observed.
     pub(crate) fn damping_of(&self, particle: usize, scratch: &AirScratch) -> f64 {
+        let of_fields = scratch.pushed.get(particle).map_or(0.0, |pushed| pushed.damping);
         let of_wind = |wind: &Wind| match wind.law {
             WindLaw::Vertex { coefficient } => coefficient,
             WindLaw::Face { air_density } => {
-                let starts = self.particle_starts[particle] as usize
-                    ..self.particle_starts[particle + 1] as usize;
-                let faces = self.faces_of[starts].iter();
-                let of_face = |&face: &u32| {
-                    let face = &scratch.faces[face as usize];
+                let of_face = |face: &FaceAir| {
                     let speed = (wind.velocity - face.velocity).dot(&face.normal);
                     face.corner_share * face.area * air_density * speed.abs()
                 };
-                faces.map(of_face).sum()
+                self.faces_at(particle, scratch).map(of_face).sum()
             }
         };
         let blowing = self.winds.iter().filter(|(_, mask)| reaches(mask.as_ref(), particle));
-        blowing.map(|(wind, _)| of_wind(wind)).sum()
+        of_fields + blowing.map(|(wind, _)| of_wind(wind)).sum::<f64>()
+    }
+
+    /// Largest damping (1/s) and square of a frequency (1/s²) that fields put on a particle up to `gain` (m/s) faster than
+    /// in `state`.
+    pub(crate) fn field_rates(&self, state: &State, inverse_masses: &[f64], gain: f64) -> [f64; 2] {
+        if self.fields.is_empty() {
+            return [0.0; 2];
+        }
+        let mut scratch = AirScratch::default();
+        self.observe_with(state, &mut scratch, gain);
+        let rates = scratch.pushed.iter().zip(inverse_masses);
+        rates.fold([0.0; 2], |[damping, stiffness], (pushed, w)| {
+            [f64::max(damping, pushed.damping * w), f64::max(stiffness, pushed.stiffness * w)]
+        })
     }
 
     /// Largest damping (1/s) that pressure puts on a particle, with faces up to `gain` (m/s) faster than in `state`.
@@ -235,20 +274,41 @@ impl Air {
             slopes.sum::<f64>() * face.area * face.corner_share
         };
         let damping_of = |particle: usize| {
-            let starts = self.particle_starts[particle] as usize
-                ..self.particle_starts[particle + 1] as usize;
-            let faces = self.faces_of[starts].iter().map(|&face| &scratch.faces[face as usize]);
+            let faces = self.faces_at(particle, &scratch);
             faces.map(|face| share_of(particle, face)).sum::<f64>() * inverse_masses[particle]
         };
         (0..state.len()).map(damping_of).fold(0.0, f64::max)
     }
 
-    /// Looks at every face in `state`.
+    /// Looks at every face in `state`, and where there are fields at every particle.
     pub(crate) fn observe(&self, state: &State, scratch: &mut AirScratch) {
+        self.observe_with(state, scratch, 0.0);
+    }
+
+    fn observe_with(&self, state: &State, scratch: &mut AirScratch, gain: f64) {
         scratch.faces.resize(self.face_starts.len() - 1, FaceAir::default());
         scratch.faces.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(face, air)| {
             *air = self.face_air(face, state);
         });
+        let count = if self.fields.is_empty() { 0 } else { state.len() };
+        let mut pushed = std::mem::take(&mut scratch.pushed);
+        pushed.resize(count, Pushed::default());
+        pushed.par_iter_mut().with_min_len(CHUNK / 8).enumerate().for_each(|(particle, pushed)| {
+            let motion = [state.position.get(particle), state.velocity.get(particle)];
+            *pushed = self.fields.push(particle, motion, self.faces_at(particle, scratch), gain);
+        });
+        scratch.pushed = pushed;
+    }
+
+    /// The faces around a particle, as they were last observed.
+    fn faces_at<'a>(
+        &'a self,
+        particle: usize,
+        scratch: &'a AirScratch,
+    ) -> impl Iterator<Item = &'a FaceAir> + Clone {
+        let starts =
+            self.particle_starts[particle] as usize..self.particle_starts[particle + 1] as usize;
+        self.faces_of[starts].iter().map(|&face| &scratch.faces[face as usize])
     }
 
     fn face_air(&self, face: usize, state: &State) -> FaceAir {
@@ -272,7 +332,7 @@ impl Air {
         }
     }
 
-    /// Adds the wind's forces (N) on the particles of a chunk.
+    /// Adds the forces (N) of winds and fields on the particles of a chunk.
     pub(crate) fn add_forces(
         &self,
         chunk: usize,
@@ -290,12 +350,10 @@ impl Air {
     }
 
     fn force_on(&self, particle: usize, state: &State, scratch: &AirScratch) -> Vector {
-        let starts =
-            self.particle_starts[particle] as usize..self.particle_starts[particle + 1] as usize;
-        let faces = self.faces_of[starts].iter().map(|&face| &scratch.faces[face as usize]);
+        let faces = self.faces_at(particle, scratch);
         let position = state.position.get(particle);
         let velocity = state.velocity.get(particle);
-        let mut force = Vector::zeros();
+        let mut force = scratch.pushed.get(particle).map_or(Vector::zeros(), |pushed| pushed.force);
         for (wind, mask) in &self.winds {
             let blows = match &wind.region {
                 Region::Box(region) => region.contains(&position),

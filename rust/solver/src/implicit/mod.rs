@@ -354,11 +354,12 @@ impl Implicit {
     }
 }
 
-/// `m/h² + ka/h` (kg/s²) of a particle, wind included; 0 of a pinned one.
+/// `m/h² + ka/h + k` (kg/s²) of a particle, wind and fields included; 0 of a pinned one.
 fn inertia(system: &System, air: &AirScratch, particle: usize, h: f64) -> f64 {
     if system.is_pinned(particle) {
         return 0.0;
     }
     let damping = system.air_damping[particle] + system.air.damping_of(particle, air);
-    system.masses[particle] / (h * h) + damping / h
+    let stiffness = system.air.stiffness_of(particle, air);
+    system.masses[particle] / (h * h) + damping / h + stiffness
 }

@@ -13,6 +13,7 @@ mod contact_things;
 mod determinism;
 mod drag;
 mod dynamics;
+mod fields;
 mod forces;
 mod implicit;
 mod integrators;

@@ -288,7 +288,9 @@ class Bake:
             live.drop(obj)
             slot.ensure(obj)
             slot.find(obj).cache.show_viewport = False
-            shown.append({modifier.name: modifier.show_viewport for modifier in slot.below(obj)})
+            # One of Collision costs little, and says that others collide with the cloth.
+            below = [modifier for modifier in slot.below(obj) if modifier.type != "COLLISION"]
+            shown.append({modifier.name: modifier.show_viewport for modifier in below})
         runtime.busy.add("bake")
         try:
             for obj, names in zip(cloths, shown, strict=True):
@@ -335,4 +337,6 @@ def outcome(done: Bake, error: BaseException | None) -> str:
         were = "were" if len(done.names) > 1 else "was"
         return f"{names} {were} stopped" + (f"; {kept}, Resume goes on" if kept else "")
     text = sentence_of(error)
+    if isinstance(error, native.DivergedError):
+        text += ": take smaller steps, or a stiffness that fits them"
     return f"{text}; {kept}" if kept and "kept" not in text else text

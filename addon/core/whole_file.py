@@ -1,6 +1,7 @@
 """Files replaced as a whole: after a kill at any moment either the old or the new one is there."""
 
 import os
+from contextlib import suppress
 
 from .refusal import cannot_write
 
@@ -18,4 +19,6 @@ def replace(path: str, data: bytes) -> None:
             file.write(data)
         os.replace(fresh, path)
     except OSError as error:
+        with suppress(OSError):  # of half a file there is no use, least of all on a full disk
+            os.remove(fresh)
         raise cannot_write(path, error) from error

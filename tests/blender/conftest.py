@@ -78,17 +78,8 @@ class Blender:
         """Call a function of the test's file inside Blender and return its result (JSON)."""
         result = self.folder / "result.json"
         result.unlink(missing_ok=True)
-        command = [
-            self.python,
-            str(Path(__file__).with_name("child.py")),
-            inspect.getfile(function),
-            function.__name__,
-            "1" if addon else "0",
-            json.dumps({key: str(value) for key, value in arguments.items()}),
-            str(result),
-        ]
         done = subprocess.run(
-            command,
+            self._command(function, addon, arguments, result),
             env=self._environment,
             cwd=self.folder,
             capture_output=True,
@@ -100,6 +91,27 @@ class Blender:
         self.output = "\n".join(line for line in lines if not line.startswith("Fra:"))
         assert done.returncode == 0, f"exit {done.returncode}\n{self.output[-4000:]}"
         return json.loads(result.read_text())
+
+    def start(self, function, **arguments):
+        """Begin to call a function inside Blender, and return the process."""
+        return subprocess.Popen(
+            self._command(function, True, arguments, self.folder / "result.json"),
+            env=self._environment,
+            cwd=self.folder,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+
+    def _command(self, function, addon, arguments, result):
+        return [
+            self.python,
+            str(Path(__file__).with_name("child.py")),
+            inspect.getfile(function),
+            function.__name__,
+            "1" if addon else "0",
+            json.dumps({key: str(value) for key, value in arguments.items()}),
+            str(result),
+        ]
 
 
 @pytest.fixture

@@ -8,7 +8,8 @@ def export(folder, version):
     from cloths import add_cloth, farthest, shown_positions
 
     del version
-    cloth, other = add_cloth(end=6), add_cloth(end=9)
+    gale = {"use_wind": True, "wind_velocity": (0.0, 8.0, 0.0), "wind_coefficient": 0.01}
+    cloth, other = add_cloth(end=6, **gale), add_cloth(end=9)
     cloth.boucle.use_strain = True
     out = {"poll": bpy.ops.boucle.export_usd.poll()}
     other.location.y = 3.0

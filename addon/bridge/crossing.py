@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from array import array
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -13,7 +14,7 @@ from ..core import crossing_scene, points
 from ..core.mesh_check import Problem, Severity
 from ..core.points import Points
 from ..core.refusal import Refusal
-from . import mesh_arrays, registry, settings, shown, simulation, start_pose
+from . import mesh_arrays, registry, settings, shown, start_pose
 from .colliders import Arrays
 
 MOST_OBJECTS = 32
@@ -94,7 +95,9 @@ def _crossing(
     obj: bpy.types.Object, asked: dict[str, Any], world: Points, arrays: Sequence[Arrays]
 ) -> list[int]:
     try:
-        solver = simulation.maker(obj, asked, world, colliders=arrays)()
+        faces = mesh_arrays.topology(obj.data)
+        mesh = (world, faces.starts, faces.corners)
+        solver = native.simulation(json.dumps(asked), [mesh], colliders=arrays)
     except native.FAILURES:
         return []  # a mesh that the solver does not take: said as an error of its own, or not the cloth's
     counts = points.empty("f", len(world) // 3)

@@ -88,7 +88,7 @@ def _frames(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
     first, last = obj.boucle.frame_start, obj.boucle.frame_end
     if first > last:
         return  # said as an error of its own
-    if first < scene.frame_start:
+    if first + 1 < scene.frame_start:
         yield _warning(
             f'"{obj.name}" begins at frame {first} and the scene plays from {scene.frame_start} on, so '
             f"it never moves live: set the cloth's Start to {scene.frame_start}, or bake"

@@ -36,10 +36,13 @@ def against(scene: Scene, name: str) -> dict[str, Any]:
 def _with(
     scene: Scene, collision: Mapping[str, Any], colliders: list[Mapping[str, Any]]
 ) -> dict[str, Any]:
-    """Nothing is simulated: the time step may be any."""
-    out = {key: scene[key] for key in scene if key != "collider"}
-    out["cloth"] = [{**scene["cloth"][0], "collision": dict(collision)}]
-    out["solver"] = {**scene["solver"], "allow_unstable": True}
+    """Nothing is simulated: neither pins nor forces nor steps matter."""
+    out: dict[str, Any] = {
+        "scene": {"frames": [0, 1]},
+        "cloth": [
+            {"name": scene["cloth"][0]["name"], "model": "springs", "collision": dict(collision)}
+        ],
+    }
     if colliders:
         out["collider"] = colliders
     return out

@@ -4,6 +4,7 @@ mod contact;
 mod placing;
 mod plan;
 mod saving;
+mod tension;
 
 use std::fmt;
 

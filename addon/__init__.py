@@ -6,14 +6,14 @@ Registration is a transaction: all steps or none.
 import bpy
 
 from . import handlers, native, preferences
-from .bridge import live, runtime, thickness_view
+from .bridge import live, overlay_view, runtime, thickness_view
 from .core.transaction import Step, apply_all, revert_all
-from .operators import add, bake
+from .operators import add, bake, material
 from .operators import cache as cache_operators
 from .operators import cloth as cloth_operators
 from .panels import cache as cache_panels
 from .panels import cloth as cloth_panels
-from .panels import collisions, forces, shape, solver, springs
+from .panels import collisions, forces, look, overlay, shape, solver, springs
 from .properties import cloth as cloth_properties
 
 _CLASSES = (
@@ -23,6 +23,7 @@ _CLASSES = (
     *cloth_operators.CLASSES,
     *bake.CLASSES,
     *cache_operators.CLASSES,
+    *material.CLASSES,
     *cloth_panels.CLASSES,
     *springs.CLASSES,
     *shape.CLASSES,
@@ -30,6 +31,8 @@ _CLASSES = (
     *forces.CLASSES,
     *solver.CLASSES,
     *cache_panels.CLASSES,
+    *look.CLASSES,
+    *overlay.CLASSES,
 )
 
 
@@ -53,6 +56,7 @@ _STEPS = (
     ),
     Step(handlers.register, handlers.unregister),
     Step(lambda: None, thickness_view.end),
+    Step(lambda: None, overlay_view.end),
     Step(lambda: None, live.drop_all),
 )
 

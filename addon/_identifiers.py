@@ -14,6 +14,8 @@ class Operators:
     ADOPT_BAKE = "boucle.adopt_bake"
     RESET = "boucle.reset"
     CHECK = "boucle.check"
+    ADD_MATERIAL = "boucle.add_material"
+    ADD_HEAT_MAP_MATERIAL = "boucle.add_heat_map_material"
 
 
 class Panels:
@@ -31,6 +33,8 @@ class Panels:
     SOLVER = "BOUCLE_PT_solver"
     SOLVER_ADVANCED = "BOUCLE_PT_solver_advanced"
     CACHE = "BOUCLE_PT_cache"
+    LOOK = "BOUCLE_PT_look"
+    OVERLAY = "BOUCLE_PT_overlay"
 
 
 EXTENSION = "boucle"
@@ -45,6 +49,9 @@ REST_ATTRIBUTE = "boucle_rest"
 STRAIN_ATTRIBUTE = "boucle_strain"
 """Point attribute: the largest strain of the edges at each vertex in the frame that is shown."""
 
+TENSION_ATTRIBUTE = "boucle_tension"
+"""Point attribute: the largest tension (N) of the springs at each vertex in the frame that is shown."""
+
 CONTACT_ATTRIBUTE = "boucle_contact"
 """Point attribute: the force (N) with which contacts press on each vertex in the frame that is shown."""
 
@@ -57,6 +64,8 @@ REST_COUNT = "boucle_rest_count"
 TARGET_MODIFIER = "Boucle Target"
 CACHE_MODIFIER = "Boucle Cache"
 TARGET_GROUP = "Boucle Target"
+FABRIC_MARK = "boucle_fabric"
+"""Custom property of our shader groups: the fabric that they are."""
 TARGET_GROUP_MARK = "boucle_target_group"
 """Custom property that tells our node group from a stranger's of the same name."""
 

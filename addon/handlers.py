@@ -8,13 +8,23 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from .bridge import certificate, live, registry, runtime, safe_step, saving, thickness_view
+from .bridge import (
+    certificate,
+    live,
+    overlay_view,
+    registry,
+    runtime,
+    safe_step,
+    saving,
+    thickness_view,
+)
 
 
 @persistent
 def frame_change_post(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Step or show live cloths."""
     thickness_view.forget()
+    overlay_view.forget()
     if registry.all_cloths():
         live.on_frame(scene, depsgraph)
 
@@ -23,6 +33,7 @@ def frame_change_post(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) ->
 def depsgraph_update_post(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Give back the rest shape when the artist starts to edit, or moves the mesh within its object."""
     thickness_view.forget()
+    overlay_view.forget()
     if live.any_session() and not runtime.busy and not runtime.rendering:
         live.follow_edits(depsgraph)
 
@@ -63,6 +74,7 @@ def load_post(*_: Any) -> None:
     """Tidy up the file that came."""
     registry.forget()
     thickness_view.follow()
+    overlay_view.follow()
     if registry.all_cloths():
         saving.after_load()
 
@@ -73,6 +85,7 @@ def undo_post(scene: bpy.types.Scene, *_: Any) -> None:
     registry.forget()
     safe_step.forget()
     thickness_view.follow()
+    overlay_view.follow()
     if live.any_session() or registry.all_cloths():
         live.revalidate(scene)
 

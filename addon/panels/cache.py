@@ -22,7 +22,7 @@ class BOUCLE_PT_cache(PhysicsPanel, Panel):
         column.prop(settings, "frame_start")
         column.prop(settings, "frame_end")
         column.prop(settings, "use_live")
-        for name in ("use_strain", "use_contact", "use_intersection"):
+        for name in ("use_strain", "use_tension", "use_contact", "use_intersection"):
             column.prop(settings, name)
         layout = self.layout
         layout.operator(Operators.BAKE).resume = False

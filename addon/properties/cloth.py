@@ -9,6 +9,7 @@ from .cache import CacheProperties
 from .changes import FIXED, OVERRIDABLE, switched
 from .collisions import CollisionProperties
 from .forces import ForceProperties
+from .overlay import OverlayProperties
 from .shape import ShapeProperties
 from .solver import SolverProperties
 from .springs import SpringProperties
@@ -21,6 +22,7 @@ class BOUCLE_PG_cloth(
     ForceProperties,
     SolverProperties,
     CacheProperties,
+    OverlayProperties,
     PropertyGroup,
 ):
     """Settings of one cloth"""

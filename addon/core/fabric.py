@@ -49,7 +49,7 @@ KNIT = Fabric(
 )  # fmt: skip
 BOUCLE = Fabric(
     "boucle", "Bouclé", "Rows of loops and curls of a thick, fuzzy yarn",
-    (0.80, 0.70, 0.56), (0.66, 0.54, 0.40), 6.5e-3, 3.5e-3, 0.95, 0.5, 0.05,
+    (0.80, 0.70, 0.56), (0.66, 0.54, 0.40), 6.5e-3, 4.5e-3, 0.95, 0.25, 0.05,
 )  # fmt: skip
 FELT = Fabric(
     "felt", "Felt", "Matted fibres in all directions",

@@ -1,6 +1,6 @@
 """Bouclé: a looped yarn, the fabric that gave us our name.
 
-Loops lie in rows, each about a point of a jittered grid: a ring of yarn with its own radius, squeezed and bent by noise. Four
+Loops lie in rows, each about a point of a jittered grid: a ring of yarn with its own radius, squeezed and bent by noise. Three
 layers of them lie over each other; what is highest is seen. Fuzz covers all.
 """
 
@@ -12,7 +12,7 @@ from typing import NamedTuple
 from .graph import Graph, Number, Socket
 from .surface import Place, Surface
 
-_LAYERS = ((0.0, 0.0, 1.0), (13.5, 57.37, 0.93), (71.21, 31.71, 0.86), (43.77, 89.13, 0.78))
+_LAYERS = ((0.0, 0.0, 1.0), (13.5, 57.37, 0.93), (71.21, 31.71, 0.86))
 """Shift of each layer, in loops and so far that they have nothing in common, and how high it lies."""
 
 
@@ -40,7 +40,7 @@ def surface(graph: Graph, place: Place) -> Surface:
         height = height.at_least(loops.height)
     fuzz = graph.noise(graph.vector(u * 11.0, v * 11.0), 4.0)
     height = height.at_least(0.22) + fuzz * 0.16
-    depth = (height * 1.15).smooth() * 0.62 + 0.38
+    depth = (height * 1.1).smooth() * 0.8 + 0.2
     color = graph.mixed(own, place.color, place.second)
     return Surface(graph.shaded(color, depth * (fuzz * 0.4 + 1.0)), height)
 

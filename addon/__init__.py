@@ -6,7 +6,7 @@ Registration is a transaction: all steps or none.
 import bpy
 
 from . import handlers, native, preferences, translations
-from .bridge import live, runtime, thickness_view
+from .bridge import live, overlay_view, runtime, thickness_view
 from .core.transaction import Step, apply_all, revert_all
 from .operators import CLASSES as OPERATORS
 from .operators import starters
@@ -38,6 +38,7 @@ _STEPS = (
     Step(translations.register, translations.unregister),
     Step(handlers.register, handlers.unregister),
     Step(lambda: None, thickness_view.end),
+    Step(lambda: None, overlay_view.end),
     Step(lambda: None, live.drop_all),
 )
 

@@ -20,6 +20,8 @@ class Operators:
     EXPORT_ALEMBIC = "boucle.export_alembic"
     RESET = "boucle.reset"
     CHECK = "boucle.check"
+    ADD_MATERIAL = "boucle.add_material"
+    ADD_HEAT_MAP_MATERIAL = "boucle.add_heat_map_material"
     APPLY_PRESET = "boucle.apply_preset"
     SAVE_PRESET = "boucle.save_preset"
     DELETE_PRESET = "boucle.delete_preset"
@@ -70,6 +72,8 @@ class Panels:
     SOLVER = "BOUCLE_PT_solver"
     SOLVER_ADVANCED = "BOUCLE_PT_solver_advanced"
     CACHE = "BOUCLE_PT_cache"
+    LOOK = "BOUCLE_PT_look"
+    OVERLAY = "BOUCLE_PT_overlay"
     RESULT = "BOUCLE_PT_result"
     TAKES = "BOUCLE_PT_takes"
 
@@ -78,6 +82,7 @@ class PanelOrder:
     """Where each panel stands among its siblings (`bl_order`), whatever was registered first; gaps are for new ones."""
 
     # below Boucle Cloth
+    PROBLEMS = 5
     SPRINGS = 10
     SHAPE = 20
     COLLISIONS = 30
@@ -85,7 +90,8 @@ class PanelOrder:
     FORCES = 50
     SOLVER = 60
     CACHE = 70
-    OVERLAY = 80
+    LOOK = 80
+    OVERLAY = 90
     # below Springs
     STIFFNESS = 10
     DAMPING = 20
@@ -100,6 +106,9 @@ class PanelOrder:
     SELF_COLLISIONS = 20
     # below Forces
     FIELD_WEIGHTS = 10
+    # below Cache
+    RESULT = 10
+    TAKES = 20
     # below Solver
     SOLVER_ADVANCED = 90
 
@@ -116,6 +125,9 @@ REST_ATTRIBUTE = "boucle_rest"
 STRAIN_ATTRIBUTE = "boucle_strain"
 """Point attribute: the largest strain of the edges at each vertex in the frame that is shown."""
 
+TENSION_ATTRIBUTE = "boucle_tension"
+"""Point attribute: the largest tension (N) of the springs at each vertex in the frame that is shown."""
+
 CONTACT_ATTRIBUTE = "boucle_contact"
 """Point attribute: the force (N) with which contacts press on each vertex in the frame that is shown."""
 
@@ -128,6 +140,8 @@ REST_COUNT = "boucle_rest_count"
 TARGET_MODIFIER = "Boucle Target"
 CACHE_MODIFIER = "Boucle Cache"
 TARGET_GROUP = "Boucle Target"
+FABRIC_MARK = "boucle_fabric"
+"""Custom property of our shader groups: the fabric that they are."""
 TARGET_GROUP_MARK = "boucle_target_group"
 """Custom property that tells our node group from a stranger's of the same name."""
 

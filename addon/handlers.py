@@ -12,6 +12,7 @@ from .bridge import (
     certificate,
     findings,
     live,
+    overlay_view,
     registry,
     runtime,
     safe_step,
@@ -25,6 +26,7 @@ from .bridge import (
 def frame_change_post(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Step or show live cloths."""
     thickness_view.forget()
+    overlay_view.forget()
     if registry.all_cloths():
         live.on_frame(scene, depsgraph)
 
@@ -33,6 +35,7 @@ def frame_change_post(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) ->
 def depsgraph_update_post(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Give back the rest shape when the artist starts to edit, or moves the mesh within its object."""
     thickness_view.forget()
+    overlay_view.forget()
     if live.any_session() and not runtime.busy and not runtime.rendering:
         live.follow_edits(depsgraph)
 
@@ -75,6 +78,7 @@ def load_post(*_: Any) -> None:
     """Tidy up the file that came."""
     registry.forget()
     thickness_view.follow()
+    overlay_view.follow()
     if registry.all_cloths():
         saving.after_load()
 
@@ -85,6 +89,7 @@ def undo_post(scene: bpy.types.Scene, *_: Any) -> None:
     registry.forget()
     safe_step.forget()
     thickness_view.follow()
+    overlay_view.follow()
     if live.any_session() or registry.all_cloths():
         live.revalidate(scene)
 

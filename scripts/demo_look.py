@@ -16,15 +16,17 @@ RING = 0.026
 FLOOR = 0.0
 WALL = 1.1
 """Distance (m) of the wall behind the cloth."""
-YARN = (0.62, 0.17, 0.085)
+YARN = (0.86, 0.27, 0.13)
+SECOND_YARN = (0.95, 0.48, 0.29)
+LOOPS = 2.2
+"""Size of the loops, as a fraction of the material's own."""
 WARM_WHITE = (0.80, 0.72, 0.62)
 BRASS = (0.83, 0.58, 0.27)
 
 
 def dress(cloth: bpy.types.Object, rod_length: float) -> None:
     """Give the cloth its yarn and build the room around it."""
-    cloth.data.materials.clear()
-    cloth.data.materials.append(boucle_material())
+    weave_in(cloth)
     for polygon in cloth.data.polygons:
         polygon.use_smooth = True
     refine(cloth)
@@ -32,11 +34,6 @@ def dress(cloth: bpy.types.Object, rod_length: float) -> None:
     build_rod(rod_length)
     light_room()
     place_camera()
-
-
-def color_socket(sockets: bpy.types.bpy_prop_collection, name: str) -> bpy.types.NodeSocket:
-    """The colour socket of a name that a node has for several kinds of values."""
-    return next(socket for socket in sockets if socket.name == name and socket.type == "RGBA")
 
 
 def refine(cloth: bpy.types.Object) -> None:
@@ -58,44 +55,14 @@ def material(name: str, color: tuple[float, float, float], **sockets: float) -> 
     return made
 
 
-def boucle_material() -> bpy.types.Material:
-    """Looped yarn: rows of knots of about 8 mm, each of its own shade, matt with a soft edge of light."""
-    made = material("Bouclé", YARN, roughness=0.95, sheen_weight=0.5, sheen_roughness=0.6)
-    nodes, links = made.node_tree.nodes, made.node_tree.links
-    shader = nodes["Principled BSDF"]
-    shader.inputs["Specular IOR Level"].default_value = 0.15
-    where = nodes.new("ShaderNodeTexCoord")
-    wobble = nodes.new("ShaderNodeTexNoise")
-    wobble.inputs["Scale"].default_value = 60.0
-    bend = nodes.new("ShaderNodeVectorMath")
-    bend.operation = "MULTIPLY_ADD"
-    bend.inputs[1].default_value = (0.012, 0.012, 0.012)
-    links.new(where.outputs["UV"], wobble.inputs["Vector"])
-    links.new(wobble.outputs["Color"], bend.inputs[0])
-    links.new(where.outputs["UV"], bend.inputs[2])
-    knots = nodes.new("ShaderNodeTexVoronoi")
-    knots.inputs["Scale"].default_value = 200.0
-    links.new(bend.outputs["Vector"], knots.inputs["Vector"])
-    shade = nodes.new("ShaderNodeValToRGB")
-    shade.color_ramp.elements[0].color = (*(1.2 * c for c in YARN), 1.0)
-    shade.color_ramp.elements[1].color = (*(0.55 * c for c in YARN), 1.0)
-    shade.color_ramp.elements[1].position = 0.8
-    links.new(knots.outputs["Distance"], shade.inputs["Fac"])
-    mottle = nodes.new("ShaderNodeMix")
-    mottle.data_type, mottle.blend_type = "RGBA", "OVERLAY"
-    mottle.inputs["Factor"].default_value = 0.15
-    links.new(shade.outputs["Color"], color_socket(mottle.inputs, "A"))
-    grey = nodes.new("ShaderNodeRGBToBW")
-    links.new(knots.outputs["Color"], grey.inputs["Color"])
-    links.new(grey.outputs["Val"], color_socket(mottle.inputs, "B"))
-    links.new(color_socket(mottle.outputs, "Result"), shader.inputs["Base Color"])
-    relief = nodes.new("ShaderNodeBump")
-    relief.invert = True
-    relief.inputs["Strength"].default_value = 0.9
-    relief.inputs["Distance"].default_value = 0.006
-    links.new(knots.outputs["Distance"], relief.inputs["Height"])
-    links.new(relief.outputs["Normal"], shader.inputs["Normal"])
-    return made
+def weave_in(cloth: bpy.types.Object) -> None:
+    """The add-on's bouclé, in two shades of one colour and with loops that a picture of the whole curtain shows."""
+    bpy.context.view_layer.objects.active = cloth
+    bpy.ops.boucle.add_material(fabric="boucle", color=YARN, scale=LOOPS)
+    values = next(
+        node for node in cloth.active_material.node_tree.nodes if node.type == "GROUP"
+    ).inputs
+    values["Second Color"].default_value = (*SECOND_YARN, 1.0)
 
 
 def build_room() -> None:
@@ -183,8 +150,8 @@ def look(place: tuple, target: tuple) -> tuple:
 def light_room() -> None:
     """A large warm lamp from the left that grazes the folds, a cool one opposite, little from everywhere."""
     middle = (0.0, 0.0, 1.2)
-    area_light("Key", (-3.0, -1.6, 3.0), middle, 1.6, 190.0, (1.0, 0.90, 0.78))
-    area_light("Fill", (3.6, -2.6, 1.6), middle, 2.6, 34.0, (0.78, 0.87, 1.0))
+    area_light("Window", (-2.9, -1.5, 2.5), middle, 1.8, 250.0, (1.0, 0.95, 0.88))
+    area_light("Fill", (3.6, -2.6, 1.6), middle, 2.6, 40.0, (0.78, 0.87, 1.0))
     area_light("Rim", (1.6, 0.85, 3.2), middle, 0.7, 40.0, (1.0, 0.95, 0.88))
     world = bpy.data.worlds.new("Room")
     bpy.context.scene.world = world
@@ -196,9 +163,9 @@ def light_room() -> None:
 def place_camera() -> None:
     """A portrait lens, a little to the right of the middle."""
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-    camera.data.lens = 62.0
+    camera.data.lens = 74.0
     camera.location = (0.9, -4.3, 1.30)
-    camera.rotation_euler = look(camera.location, (0.0, 0.0, 1.10))
+    camera.rotation_euler = look(camera.location, (0.0, 0.0, 1.14))
     bpy.context.scene.collection.objects.link(camera)
     bpy.context.scene.camera = camera
 

@@ -21,10 +21,12 @@ GATHER = (5, 32)
 WIDTH = 1.7
 HEIGHT = 1.8
 VERTICES = 96
+ROD = 1.36
+"""Length (m) of what is seen of the rod when the curtain is drawn together."""
 RINGS = 7
-GATHERED = 0.62
+GATHERED = 0.54
 """Distance of the rings when drawn together, as a fraction of what it was."""
-PLEAT = 0.03
+PLEAT = 0.05
 """m; every other ring's point goes forward by this, the rest back."""
 STILL = {"frame": 52, "width": 560, "height": 700, "samples": 14}
 VIDEO = {"width": 288, "height": 360, "samples": 4}
@@ -59,7 +61,7 @@ def bake(folder: Path) -> None:
     settings.damping = 0.004
     settings.deformation_rate = 0.10
     pins = hang(cloth)
-    demo_look.dress(cloth, WIDTH + 0.16)
+    demo_look.dress(cloth, ROD)
     draw_together(cloth, pins, demo_look.build_rings([cloth.data.vertices[p].co.x for p in pins]))
     bpy.context.view_layer.objects.active = cloth
     scene.frame_set(1)

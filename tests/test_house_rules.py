@@ -45,7 +45,7 @@ OUTSIDE = {
     "_identifiers": set(),
     "core": {"numpy"},
     "native": {"boucle_core"},
-    "bridge": {"bpy", "bmesh", "gpu", "mathutils"},
+    "bridge": {"bpy", "bmesh", "blf", "gpu", "mathutils"},
     "properties": {"bpy"},
     "operators": {"bpy", "bmesh", "bpy_extras", "mathutils"},
     "handlers": {"bpy"},

@@ -95,6 +95,11 @@ def on_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 
 def show_attributes(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
     """Let the mesh's attributes tell of the frame that is shown what the user wants to know."""
+    vertex_attributes.show(obj, numbers_at(obj, scene))
+
+
+def numbers_at(obj: bpy.types.Object, scene: bpy.types.Scene) -> Numbers:
+    """What is known of the vertices in the frame that is shown, of what the user wants to know."""
     numbers: Numbers = {}
     session = session_of(obj)
     keys = vertex_attributes.wanted(obj)
@@ -104,7 +109,19 @@ def show_attributes(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
         numbers = vertex_attributes.of_bake(obj, scene.frame_current)
     elif session is not None and _is_live(obj):
         numbers = session.frames.nearest(scene.frame_current).numbers
-    vertex_attributes.show(obj, {key: numbers[key] for key in keys if key in numbers})
+    return {key: numbers[key] for key in keys if key in numbers}
+
+
+def read_last(obj: bpy.types.Object) -> None:
+    """Ask the solver what the user wants to know now of the last simulated frame."""
+    session = session_of(obj)
+    if session is None or session.solver is None or runtime.busy:
+        return
+    try:
+        session.frames.tell(_read_numbers(session.solver, obj))
+    except native.FAILURES as error:
+        session.solver = None
+        _say(obj, sentence_of(error))
 
 
 def _is_live(obj: bpy.types.Object) -> bool:

@@ -16,6 +16,8 @@ from . import mesh_arrays, registry
 
 _COLOR = (0.25, 0.65, 1.0, 0.35)
 
+_rows = points.rows
+
 _handle: Any = None
 _batches: dict[int, Any] = {}
 """What is drawn of each cloth, by `session_uid`."""
@@ -106,9 +108,3 @@ def _batches_of(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, shader: A
         vertices.attr_fill("pos", _rows(side, 3))
         out.append(gpu.types.GPUBatch(type="LINES", buf=vertices, elem=order))
     return out
-
-
-def _rows(flat: Points, width: int) -> Any:
-    """A flat buffer as rows, without a copy."""
-    view = memoryview(flat).cast("B")
-    return view.cast(memoryview(flat).format, [len(flat) // width, width])

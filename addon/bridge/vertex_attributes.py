@@ -16,8 +16,13 @@ from . import cache, runtime
 
 
 def wanted(obj: bpy.types.Object) -> tuple[str, ...]:
-    """The keys of the quantities that the user wants to know."""
-    return tuple(one.key for one in quantity.ALL if getattr(obj.boucle, f"use_{one.key}"))
+    """The keys of the quantities that the user wants to know, the heat map's among them."""
+    settings = obj.boucle
+    return tuple(
+        one.key
+        for one in quantity.ALL
+        if settings.overlay == one.key or getattr(settings, f"use_{one.key}")
+    )
 
 
 def of_bake(obj: bpy.types.Object, frame: int) -> Numbers:

@@ -16,7 +16,8 @@ class CacheFiles(NamedTuple):
     report: str
     checkpoint: str
     strain: str
-    """There only if the bake keeps the strain; so the next two."""
+    """There only if the bake keeps the strain; so the next three."""
+    tension: str
     contact: str
     intersection: str
 
@@ -42,7 +43,7 @@ def _with_middle(path: str, word: str) -> str:
 def files_of(pc2: str) -> CacheFiles:
     """The files that belong to a PC2 file."""
     stem = os.path.splitext(pc2)[0]
-    endings = ("json", "checkpoint", "strain", "contact", "intersection")
+    endings = ("json", "checkpoint", "strain", "tension", "contact", "intersection")
     return CacheFiles(pc2, *(f"{stem}.{ending}" for ending in endings))
 
 

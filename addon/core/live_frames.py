@@ -71,6 +71,13 @@ class LiveFrames:
         self._frames.append(frame)
         self.size_bytes += frame.size_bytes
 
+    def tell(self, numbers: Numbers) -> None:
+        """Add what is known now of the last simulated frame."""
+        last = self._frames[-1]
+        more = last._replace(numbers={**last.numbers, **numbers})
+        self._frames[-1] = more
+        self.size_bytes += more.size_bytes - last.size_bytes
+
     def nearest(self, frame: int) -> Frame:
         """The kept frame, or the first or last one beyond the ends."""
         return self._frames[min(max(frame, self.first), self.last) - self.first]

@@ -99,3 +99,9 @@ def _transform_slowly(points: Points, matrix: Affine, kind: str) -> Points:
         out[k + 1] = d * p + e * q + f * r + y
         out[k + 2] = g * p + h * q + i * r + z
     return out
+
+
+def rows(flat: Points, width: int) -> Any:
+    """A flat buffer as rows, without a copy."""
+    view = memoryview(flat).cast("B")
+    return view.cast(memoryview(flat).format, [len(flat) // width, width])

@@ -5,7 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from .._identifiers import CONTACT_ATTRIBUTE, INTERSECTION_ATTRIBUTE, STRAIN_ATTRIBUTE
+from .._identifiers import (
+    CONTACT_ATTRIBUTE,
+    INTERSECTION_ATTRIBUTE,
+    STRAIN_ATTRIBUTE,
+    TENSION_ATTRIBUTE,
+)
 from . import points
 from .points import Points
 
@@ -22,12 +27,21 @@ class Quantity(NamedTuple):
     """The mesh's attribute."""
     reader: str
     """The method of a simulation that tells it."""
+    label: str
+    unit: str
+    """In which the legend tells it."""
+    factor: float
+    """What makes that unit of a value."""
 
 
-STRAIN = Quantity("strain", STRAIN_ATTRIBUTE, "read_strain")
-CONTACT = Quantity("contact", CONTACT_ATTRIBUTE, "read_contacts")
-INTERSECTION = Quantity("intersection", INTERSECTION_ATTRIBUTE, "read_intersections")
-ALL = (STRAIN, CONTACT, INTERSECTION)
+STRAIN = Quantity("strain", STRAIN_ATTRIBUTE, "read_strain", "Strain", "%", 100.0)
+TENSION = Quantity("tension", TENSION_ATTRIBUTE, "read_tension", "Tension", "N", 1.0)
+CONTACT = Quantity("contact", CONTACT_ATTRIBUTE, "read_contacts", "Contact", "N", 1.0)
+INTERSECTION = Quantity(
+    "intersection", INTERSECTION_ATTRIBUTE, "read_intersections", "Intersections", "", 1.0
+)
+ALL = (STRAIN, TENSION, CONTACT, INTERSECTION)
+BY_KEY = {quantity.key: quantity for quantity in ALL}
 
 
 def empty(keys: tuple[str, ...], vertex_count: int) -> dict[str, Points]:

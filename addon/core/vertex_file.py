@@ -17,6 +17,7 @@ from .refusal import cannot_write
 _HEADER = struct.Struct("<16sii")
 _MAGIC = {
     ".strain": b"BOUCLE STRAIN 1\n",
+    ".tension": b"BOUCLE TENSION 1",
     ".contact": b"BOUCLE CONTACT 1",
     ".intersection": b"BOUCLE CROSSED 1",
 }

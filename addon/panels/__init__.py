@@ -6,6 +6,8 @@ from . import (
     collisions,
     field_weights,
     forces,
+    look,
+    overlay,
     presets,
     problems,
     result,
@@ -28,6 +30,8 @@ _PARENTS = (
 
 _OTHERS = (
     field_weights,
+    look,
+    overlay,
     presets,
     problems,
     result,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bpy.types import Context, Panel
 
-from .._identifiers import Panels
+from .._identifiers import PanelOrder, Panels
 from .cloth import PhysicsPanel, draw_text
 
 _WEIGHTS = (
@@ -18,6 +18,7 @@ class BOUCLE_PT_field_weights(PhysicsPanel, Panel):
     bl_idname = Panels.FIELD_WEIGHTS
     bl_parent_id = Panels.FORCES
     bl_label = "Field Weights"
+    bl_order = PanelOrder.FIELD_WEIGHTS
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Context) -> None:

@@ -6,7 +6,7 @@ import json
 
 from bpy.types import Context, Panel
 
-from .._identifiers import Operators, Panels
+from .._identifiers import Operators, PanelOrder, Panels
 from .cloth import PhysicsPanel, draw_text
 
 _ICONS = {"ERROR": "CANCEL", "WARNING": "ERROR", "HINT": "INFO"}
@@ -18,6 +18,7 @@ class BOUCLE_PT_problems(PhysicsPanel, Panel):
     bl_idname = Panels.PROBLEMS
     bl_parent_id = Panels.CLOTH
     bl_label = "Problems"
+    bl_order = PanelOrder.PROBLEMS
 
     def draw(self, context: Context) -> None:
         """Lay out."""

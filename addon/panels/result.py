@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bpy.types import Context, Panel
 
-from .._identifiers import Operators, Panels
+from .._identifiers import Operators, PanelOrder, Panels
 from .cloth import PhysicsPanel
 
 
@@ -14,6 +14,7 @@ class BOUCLE_PT_result(PhysicsPanel, Panel):
     bl_idname = Panels.RESULT
     bl_parent_id = Panels.CACHE
     bl_label = "Result"
+    bl_order = PanelOrder.RESULT
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, _context: Context) -> None:

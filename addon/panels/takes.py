@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 from bpy.types import Context, Panel, UIList
 
-from .._identifiers import Lists, Operators, Panels
+from .._identifiers import Lists, Operators, PanelOrder, Panels
 from .cloth import PhysicsPanel, draw_text
 
 
@@ -37,6 +37,7 @@ class BOUCLE_PT_takes(PhysicsPanel, Panel):
     bl_idname = Panels.TAKES
     bl_parent_id = Panels.CACHE
     bl_label = "Takes"
+    bl_order = PanelOrder.TAKES
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: Context) -> None:

@@ -89,6 +89,12 @@ class CacheProperties:
         "bakes keep it beside the cache",
         default=False, options=FIXED, override=OVERRIDABLE, update=attributes_switched,
     )  # fmt: skip
+    use_tension: BoolProperty(
+        name="Tension Attribute",
+        description="Tell the largest tension of the springs at each vertex in the attribute boucle_tension (N); bakes "
+        "keep it beside the cache",
+        default=False, options=FIXED, override=OVERRIDABLE, update=attributes_switched,
+    )  # fmt: skip
     use_contact: BoolProperty(
         name="Contact Attribute",
         description="Tell the force with which contacts press on each vertex in the attribute boucle_contact (N); bakes "

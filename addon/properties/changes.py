@@ -24,6 +24,25 @@ def attributes_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Co
         live.show_attributes(settings.id_data, context.scene)
 
 
+def overlay_switched(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Learn what is to be shown, as far as it is known of the present frame, and begin or end to draw it."""
+    from ..bridge import live, overlay_view, registry
+
+    obj = settings.id_data
+    if registry.is_cloth(obj) and obj.library is None:
+        if settings.overlay != "none":
+            live.read_last(obj)
+        live.show_attributes(obj, context.scene)
+    overlay_view.follow()
+
+
+def overlay_redrawn(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
+    """Draw the heat map anew."""
+    from ..bridge import overlay_view
+
+    overlay_view.forget()
+
+
 def thickness_switched(_settings: bpy.types.PropertyGroup, _context: bpy.types.Context) -> None:
     """Begin to draw the thickness in the viewports, or end it."""
     from ..bridge import thickness_view

@@ -10,6 +10,7 @@ from .changes import FIXED, OVERRIDABLE, switched
 from .collisions import CollisionProperties
 from .field_weights import BOUCLE_PG_field_weights, FieldWeightProperties
 from .forces import ForceProperties
+from .overlay import OverlayProperties
 from .presets import PresetProperties
 from .problems import ProblemProperties
 from .shape import ShapeProperties
@@ -29,6 +30,7 @@ class BOUCLE_PG_cloth(
     PresetProperties,
     ProblemProperties,
     TakeProperties,
+    OverlayProperties,
     PropertyGroup,
 ):
     """Settings of one cloth"""

@@ -159,6 +159,12 @@ class Simulation:
     def read_strain(self, cloth: int, out: Buffer) -> None:
         """Fill out, float32 (n,), with the largest strain of the edges at each vertex."""
 
+    def read_tension(self, cloth: int, out: Buffer) -> None:
+        """Fill out, float32 (n,), with the largest tension (N) of the springs at each vertex, 0 where all are slack.
+
+        Stretch and shear springs count, and what implicit steps add to hold an edge at its allowed length; not damping.
+        """
+
     def read_contacts(self, cloth: int, out: Buffer) -> None:
         """Fill out, float32 (n,), with the force (N) with which contacts press each vertex."""
 

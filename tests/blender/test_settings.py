@@ -8,6 +8,7 @@ DESIGN_NAMES = {
     "frame_end", "quality", "tolerance", "linear_solver", "stiffness_from", "use_strain",
     "self_collision", "thickness", "friction", "object_collision", "collision_collection",
     "collision_group", "self_collision_group", "show_thickness", "use_contact", "use_intersection",
+    "use_tension", "overlay", "overlay_range", "overlay_minimum", "overlay_maximum", "overlay_opacity",
 }  # fmt: skip
 
 
@@ -60,7 +61,7 @@ class Layout:
     def _inner(self, **_):
         return Layout(self.drawn)
 
-    column = row = box = split = _inner
+    column = row = box = split = grid_flow = _inner
 
     def separator(self):
         """A gap."""
@@ -100,6 +101,13 @@ class Layout:
         for owner, name in ((data, items), (active, number)):
             assert name in owner.bl_rna.properties, name
 
+    def operator_enum(self, idname, name, **_):
+        import bpy
+
+        group, operator = idname.split(".")
+        assert name in getattr(getattr(bpy.ops, group), operator).get_rna_type().properties
+        self.drawn.append(idname)
+
     def label(self, text="", **_):
         assert text, "an empty line"
         self.drawn.append(text)
@@ -138,6 +146,8 @@ def draw_everything():
         "use_wind": True,
         "wind_law": "face",
         "limiter": "none",
+        "overlay": "tension",
+        "overlay_range": "manual",
     }.items():
         setattr(obj.boucle, name, value)
     draw_panels()

@@ -55,7 +55,7 @@ def test_those_are_together_that_meet_by_way_of_others_too_and_the_others_are_to
         scene("E", substeps=4),
         scene("F", start=3, end=99),
     ]
-    found = joint.groups(scenes, always)
+    found = joint.groups(scenes, always, dict.fromkeys("ABCDEF", ""))
     assert found.together == [["A", "C"], ["B", "F"], ["D"], ["E"]]
     told = dict(sentence.split(" are baked one after the other ") for sentence in found.apart)
     assert told['"A" and "B"'] == "and do not collide: their start frames differ"
@@ -64,5 +64,12 @@ def test_those_are_together_that_meet_by_way_of_others_too_and_the_others_are_to
     assert '"A" and "C"' not in told
     chain = {frozenset("AC"), frozenset("CF")}
     scenes = [scene(name) for name in "ABCDEF"]
-    found = joint.groups(scenes, lambda one, other: frozenset((one, other)) in chain)
+
+    def meets(one, other):
+        return frozenset((one, other)) in chain
+
+    found = joint.groups(scenes, meets, dict.fromkeys("ABCDEF", ""))
     assert found == ([["A", "C", "F"], ["B"], ["D"], ["E"]], [])
+    found = joint.groups(scenes, meets, {**dict.fromkeys("ABDEF", ""), "C": "a wind"})
+    assert found.together == [["A"], ["B"], ["C"], ["D"], ["E"], ["F"]]
+    assert "force fields or field weights differ" in found.apart[0]

@@ -236,6 +236,12 @@ impl Simulation {
         buffers::write_numbers(out, &strain, "float32")
     }
 
+    fn read_tension(&mut self, py: Python<'_>, cloth: i64, out: &Bound<'_, PyAny>) -> PyResult<()> {
+        let index = self.cloth(py, cloth)?.0;
+        let tension = self.with(py, |assembly| Ok(assembly.simulation.vertex_tension(index)))?;
+        buffers::write_numbers(out, &tension, "float32")
+    }
+
     fn read_contacts(
         &mut self,
         py: Python<'_>,

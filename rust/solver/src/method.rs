@@ -56,6 +56,16 @@ impl Method {
         }
     }
 
+    /// The edges that implicit steps can hold at their allowed length, cloth by cloth in the order of their springs, and the
+    /// tension (N) that does it now.
+    pub(crate) fn held_edges(&self) -> impl Iterator<Item = ([u32; 2], f64)> {
+        let implicit = match self {
+            Self::Explicit(..) => None,
+            Self::Implicit(implicit) => Some(implicit),
+        };
+        implicit.into_iter().flat_map(|implicit| implicit.held_edges())
+    }
+
     pub(crate) fn is_implicit(&self) -> bool {
         matches!(self, Self::Implicit(_))
     }

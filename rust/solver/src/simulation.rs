@@ -7,6 +7,7 @@ mod interrupt;
 mod placing;
 mod plan;
 mod saving;
+mod tension;
 
 pub use interrupt::Interrupter;
 

@@ -138,6 +138,11 @@ impl Implicit {
         }
     }
 
+    /// The edges that can be held at their allowed length, and the tension (N) that does it.
+    pub(crate) fn held_edges(&self) -> impl Iterator<Item = ([u32; 2], f64)> {
+        self.taut.ends().zip(self.memory.tensions.iter().copied())
+    }
+
     /// Forgets what depends on which particles are pinned.
     pub(crate) fn follow_pins(&mut self, system: &System) {
         self.preconditioner.forget();

@@ -117,6 +117,11 @@ impl Taut {
         &self.pulling
     }
 
+    /// The ends of each edge, in the order of its tension.
+    pub(super) fn ends(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.edges.iter().map(|edge| edge.ends)
+    }
+
     pub(super) fn edge_count(&self) -> usize {
         self.edges.len()
     }

@@ -1,7 +1,9 @@
 //! Chains and strips that hang at rest.
 
 use boucle_geometry::Vector;
-use boucle_solver::{Cloth, IntegratorKind, Mass, Settings, Simulation, SpringMaterial, StepSize};
+use boucle_solver::{
+    Cloth, IntegratorKind, Limiter, Mass, Settings, Simulation, SpringMaterial, StepSize,
+};
 
 use crate::sheets::{G, assert_close, classic, material, network, run, sheet, simulation, spring};
 
@@ -61,6 +63,58 @@ fn each_spring_of_a_hanging_chain_carries_the_weight_below_it() {
         let weight = MASS * G * (f64::from(count) - i as f64);
         assert!((force / weight - 1.0).abs() < 1e-8, "spring {i}: {force} N for {weight} N");
     }
+}
+
+/// The tension at a vertex is that of the spring above it, which carries the vertex's own weight, too.
+#[test]
+fn the_tension_at_a_vertex_is_that_of_its_most_loaded_spring() {
+    let count = 20_usize;
+    let tension = settled(chain(20, 1.0), 10).vertex_tension(0);
+    for (i, &tension) in tension.iter().enumerate() {
+        let weight = MASS * G * (count + 1 - i.max(1)) as f64;
+        assert_close(&format!("vertex {i}"), f64::from(tension), weight, 1e-6);
+    }
+}
+
+/// Springs ten times softer would stretch by up to 2; held to 5 % they carry little of the weight themselves. The
+/// top edge was 1.3 % off: a step's tensions are those of its last iteration.
+#[test]
+fn the_tension_of_edges_at_their_limit_is_the_weight_below_them() {
+    let count = 20_usize;
+    let mut cloth = chain(20, 1.0);
+    cloth.springs.iter_mut().for_each(|spring| spring.stiffness *= 0.1);
+    cloth.material.limiter = Limiter::Project;
+    cloth.material.deformation_rate = 0.05;
+    let settings =
+        Settings { gravity: Vector::new(0.0, 0.0, -G), threads: 1, ..Settings::default() };
+    let mut simulation = simulation(cloth, settings);
+    run(&mut simulation, 240);
+    let tension = simulation.vertex_tension(0);
+    let positions = simulation.positions(0);
+    assert!((positions[0] - positions[1]).norm() < 0.1051, "the edge is held");
+    for (i, &tension) in tension.iter().enumerate() {
+        let weight = MASS * G * (count + 1 - i.max(1)) as f64;
+        assert_close(&format!("vertex {i}"), f64::from(tension), weight, 3e-2);
+    }
+}
+
+/// Two free particles pushed together pull at nothing; an edge that one cloth holds is not told of another.
+#[test]
+fn slack_springs_have_no_tension_and_cloths_are_told_apart() {
+    let pair = |length: f64| {
+        let positions = vec![Vector::zeros(), Vector::x() * length];
+        network(positions, vec![spring([0, 1], 1.0, 10.0)], vec![1.0; 2], &[0, 1], classic_limit())
+    };
+    let cloths = vec![pair(0.5), pair(1.25)];
+    let settings = Settings { gravity: Vector::zeros(), threads: 1, ..Settings::default() };
+    let simulation = Simulation::new(cloths, Vec::new(), settings).expect("a simulation");
+    assert_eq!(simulation.vertex_tension(0), [0.0; 2]);
+    assert_eq!(simulation.vertex_tension(1), [2.5; 2]);
+}
+
+/// A limiter that holds edges, in the material of `sheets::material`.
+fn classic_limit() -> SpringMaterial {
+    SpringMaterial { limiter: Limiter::Project, ..material([0.0; 3]) }
 }
 
 /// Areal density (kg/m²), stiffness (N/m) and length (m) of the strip.

@@ -4,8 +4,10 @@ mod contact;
 mod placing;
 mod plan;
 mod saving;
+mod shape;
 
 use std::fmt;
+use std::sync::Arc;
 
 use boucle_geometry::Vector;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -27,7 +29,9 @@ use crate::method::Method;
 use crate::overstretch::{OverstretchedEdge, overstretched};
 use crate::perturbation::perturb;
 use crate::pins::Pins;
+use crate::rest::Rest;
 use crate::settings::Settings;
+use crate::sewing::Seams;
 use crate::stability::Spectrum;
 use crate::state::State;
 use crate::step::Step;
@@ -46,6 +50,9 @@ pub struct Simulation {
     pins: Pins,
     contacts: Contacts,
     limits: Vec<Limit>,
+    /// Of the cloths whose rest lengths change.
+    rests: Vec<Option<Box<Rest>>>,
+    seams: Seams,
     state: State,
     /// The state at the start of a frame, to fall back on.
     good: State,
@@ -61,7 +68,7 @@ pub struct Simulation {
     clipped: u32,
     /// Of the present state, if anything can touch.
     intersections: Option<u64>,
-    threads: ThreadPool,
+    threads: Arc<ThreadPool>,
 }
 
 /// How a frame went.
@@ -129,6 +136,8 @@ impl Simulation {
             spectrum: Spectrum::default(),
             contacts: Contacts::new(&cloths, &colliders),
             limits: Vec::new(),
+            rests: cloths.iter().map(|_| None).collect(),
+            seams: Seams::new(&cloths),
             good: state.clone(),
             good_memory: None,
             frame: settings.first_frame,
@@ -147,9 +156,10 @@ impl Simulation {
             settings,
             digest,
             state,
-            threads,
+            threads: Arc::new(threads),
         };
         simulation.follow_pins();
+        simulation.shrink_from_the_first()?;
         simulation.intersect();
         simulation.plan()?;
         Ok(simulation)
@@ -220,6 +230,7 @@ impl Simulation {
             return Err(self.diverged(first));
         }
         self.frame += 1;
+        self.end_shape();
         self.contacts.end_frame();
         self.clipped = self.contacts.take_clipped();
         self.intersect();
@@ -246,6 +257,7 @@ impl Simulation {
         self.method.take_iterations();
         self.contacts.take_clipped();
         self.state.copy_from(&self.good);
+        self.shape(0.0, true);
         if self.intersections.is_some_and(|count| count > 0) {
             self.intersect();
         }
@@ -263,14 +275,16 @@ impl Simulation {
             perturb(&mut self.state, &self.cloths, self.settings.perturbation);
         }
         self.pins.start(&mut self.state, duration);
-        let Self { system, pins, contacts, limits, state, method, threads, .. } = self;
-        let stride =
-            plan::stride(method, contacts.longest_way(&state.velocity, duration), substeps);
+        let way = self.contacts.longest_way(&self.state.velocity, duration);
+        let stride = plan::stride(&self.method, way, substeps);
         // No pass has work for more.
-        let others = state.len() / CHUNK;
+        let others = self.state.len() / CHUNK;
+        let threads = Arc::clone(&self.threads);
         threads.install(|| {
             with_others_awake(others, || {
                 let outcome = (1..=substeps).find_map(|substep| {
+                    self.shape(f64::from(substep) / f64::from(substeps), false);
+                    let Self { system, pins, contacts, limits, state, method, .. } = &mut *self;
                     let step = Step { system, pins, h, number: substep, count: substeps, stride };
                     let is_short = step.run(state, method, contacts, limits);
                     let is_seen = watches || substep == substeps;
@@ -298,7 +312,9 @@ impl Simulation {
         let cloths = self.cloths.iter().zip(self.bases.iter().copied());
         let certificate =
             certify(cloths, &self.state, &self.settings.gravity, self.frame, self.substeps_taken);
+        let of_pressure = self.system.air.pressures.energy(&self.state);
         Certificate {
+            potential_energy: certificate.potential_energy + of_pressure,
             iterations: self.iterations_taken,
             intersections: self.intersections,
             clipped: self.clipped,
@@ -373,10 +389,7 @@ impl Simulation {
         }
         self.method.follow_pins(&self.system);
         self.contacts.follow_pins(&self.system.inverse_masses);
-        let placed = self.cloths.iter().zip(&self.bases);
-        let inverse_masses = &self.system.inverse_masses;
-        self.limits =
-            placed.filter_map(|(cloth, &base)| Limit::of(cloth, base, inverse_masses)).collect();
+        self.limits = (0..self.cloths.len()).filter_map(|cloth| self.limit_of(cloth)).collect();
         self.spectrum = Spectrum::of(&self.cloths, &self.system);
     }
 }

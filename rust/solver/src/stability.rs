@@ -85,6 +85,11 @@ impl Spectrum {
         }
     }
 
+    /// The same with so much more w² (1/s²).
+    pub(crate) fn with_more(self, w_squared: f64) -> Self {
+        Self { w_squared: self.w_squared + w_squared, ..self }
+    }
+
     /// The same with so much more damping (1/s).
     pub(crate) fn damped(self, damping: f64) -> Self {
         Self { damping: self.damping + damping, ..self }

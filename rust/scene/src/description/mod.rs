@@ -10,6 +10,7 @@ mod collider;
 mod collision;
 mod force;
 mod pins;
+mod shape;
 mod solver;
 mod table;
 mod tree;
@@ -21,6 +22,7 @@ pub use collider::{Capsule, ColliderDescription, Cuboid, HalfSpace, Sphere};
 pub use collision::{ClothCollision, CollisionDescription};
 pub use force::{Force, RegionDescription};
 pub use pins::{Keyframe, PinGroup, Pins};
+pub use shape::{PressureDescription, PressureKeyframe, SewingDescription, Shrink, ShrinkKeyframe};
 pub use solver::{SolverDescription, Substeps};
 pub(crate) use tree::joined;
 

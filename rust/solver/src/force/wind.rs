@@ -15,6 +15,7 @@
 use boucle_geometry::{Aabb, Vector};
 use rayon::prelude::*;
 
+use super::{PressureScratch, Pressures};
 use crate::cloth::Cloth;
 use crate::error::{Error, Result};
 use crate::kernel::{CHUNK, ChunkVectors};
@@ -97,6 +98,7 @@ impl Wind {
 /// All winds, and what they need to know of the meshes.
 #[derive(Debug)]
 pub(crate) struct Air {
+    pub(crate) pressures: Pressures,
     winds: Vec<(Wind, Option<Vec<bool>>)>,
     /// Corners of all faces, in the simulation's numbering.
     face_starts: Vec<u32>,
@@ -109,6 +111,7 @@ pub(crate) struct Air {
 /// What the air does to each face in the present state.
 #[derive(Debug, Default)]
 pub(crate) struct AirScratch {
+    pub(crate) pressure: PressureScratch,
     faces: Vec<FaceAir>,
 }
 
@@ -148,11 +151,12 @@ impl Air {
             let mask = vertex_mask(&wind.region, cloths);
             (wind, mask)
         });
-        Self { winds: winds.collect(), face_starts, corners, particle_starts, faces_of }
+        let (winds, pressures) = (winds.collect(), Pressures::new(cloths));
+        Self { pressures, winds, face_starts, corners, particle_starts, faces_of }
     }
 
     pub(crate) fn is_still(&self) -> bool {
-        self.winds.is_empty()
+        self.winds.is_empty() && self.pressures.is_empty()
     }
 
     /// Largest damping (N·s/m) that the classic law puts on a particle.
@@ -196,7 +200,7 @@ impl Air {
             return 0.0;
         }
         let mut scratch = AirScratch::default();
-        self.observe(state, &mut scratch);
+        self.observe_wind(state, &mut scratch);
         let share_of = |face: &FaceAir| {
             let slopes = pressing.iter().map(|&(air_density, velocity)| {
                 air_density * ((velocity - face.velocity).norm() + gain)
@@ -214,6 +218,15 @@ impl Air {
 
     /// Looks at every face in `state`.
     pub(crate) fn observe(&self, state: &State, scratch: &mut AirScratch) {
+        if !self.winds.is_empty() {
+            self.observe_wind(state, scratch);
+        }
+        if !self.pressures.is_empty() {
+            self.pressures.observe(state, &mut scratch.pressure);
+        }
+    }
+
+    fn observe_wind(&self, state: &State, scratch: &mut AirScratch) {
         scratch.faces.resize(self.face_starts.len() - 1, FaceAir::default());
         scratch.faces.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(face, air)| {
             *air = self.face_air(face, state);
@@ -241,7 +254,7 @@ impl Air {
         }
     }
 
-    /// Adds the wind's forces (N) on the particles of a chunk.
+    /// Adds the forces (N) of wind and pressure on the particles of a chunk.
     pub(crate) fn add_forces(
         &self,
         chunk: usize,
@@ -251,7 +264,10 @@ impl Air {
     ) {
         let first = chunk * CHUNK;
         for particle in first..(first + CHUNK).min(state.len()) {
-            let push = self.force_on(particle, state, scratch);
+            let mut push = self.force_on(particle, state, scratch);
+            if let Some(pressure) = scratch.pressure.force(particle) {
+                push += pressure;
+            }
             for axis in 0..3 {
                 force[axis][particle - first] += push[axis];
             }

@@ -34,7 +34,8 @@ impl Simulation {
         let System { air, inverse_masses, .. } = &self.system;
         let fall = self.settings.gravity.norm() * self.frame_duration();
         let pressure = air.pressure_damping(&self.state, inverse_masses, fall);
-        let spectrum = self.spectrum.stiffened(factor).damped(pressure);
+        let inflation = air.pressures.stiffness(&self.state, inverse_masses);
+        let spectrum = self.spectrum.stiffened(factor).damped(pressure).with_more(inflation);
         spectrum.largest_step(rule, self.frame_duration())
     }
 

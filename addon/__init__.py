@@ -13,7 +13,7 @@ from .operators import cache as cache_operators
 from .operators import cloth as cloth_operators
 from .panels import cache as cache_panels
 from .panels import cloth as cloth_panels
-from .panels import collisions, forces, shape, solver, springs
+from .panels import collisions, forces, shape, solver, springs, tailoring
 from .properties import cloth as cloth_properties
 
 _CLASSES = (
@@ -26,6 +26,7 @@ _CLASSES = (
     *cloth_panels.CLASSES,
     *springs.CLASSES,
     *shape.CLASSES,
+    *tailoring.CLASSES,
     *collisions.CLASSES,
     *forces.CLASSES,
     *solver.CLASSES,

@@ -25,6 +25,7 @@ from . import (
     runtime,
     sampling,
     settings,
+    shape,
     simulation,
     slot,
     vertex_attributes,
@@ -91,9 +92,12 @@ class Bake:
         self._restrict(description)
         sampling.refuse_other_count(obj, depsgraph)
         matrix = sampling.object_matrix(obj, depsgraph)
-        rest_world = points.transform(sampling.targets(obj, depsgraph), matrix, "d")
+        start_world = points.transform(sampling.targets(obj, depsgraph), matrix, "d")
         met = Colliders(obj, scene, depsgraph)
-        make = simulation.maker(obj, description, rest_world, self.options.threads, met.arrays)
+        rested = shape.rest(obj, matrix)
+        make = simulation.maker(
+            obj, description, start_world, self.options.threads, met.arrays, rested
+        )
         build = Step(start, make)
         record = self._record(obj, description)
         yield build

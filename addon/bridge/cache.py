@@ -13,7 +13,7 @@ from ..core import cache_paths, drift, pc2, report
 from ..core.cache_paths import CacheFiles
 from ..core.progress import size
 from ..core.refusal import Refusal, cannot_write
-from . import registry, runtime, settings, slot
+from . import registry, runtime, settings, shape, slot
 
 
 def absolute(obj: bpy.types.Object, path: str) -> str:
@@ -151,6 +151,7 @@ def drift_of(obj: bpy.types.Object, scene: bpy.types.Scene, in_full: bool) -> li
     if in_full:
         now = settings.record(obj, description)
     else:
+        description = shape.steady(obj, description)
         now = drift.record(description, len(obj.data.vertices), "")
     return drift.differences(then, now)
 

@@ -33,6 +33,7 @@ from . import (
     runtime,
     sampling,
     settings,
+    shape,
     simulation,
     vertex_attributes,
 )
@@ -155,7 +156,9 @@ def _build(
     sampling.inverse(obj, matrix)
     met = Colliders(obj, scene, depsgraph)
     world = points.transform(local, matrix, "d")
-    solver = simulation.maker(obj, description, world, colliders=met.arrays)()
+    rested = shape.rest(obj, matrix)
+    make = simulation.maker(obj, description, world, colliders=met.arrays, shape=rested)
+    solver = make()
     limit = memory_limit()
     first = Frame(local, solver.certificate(), _read_numbers(solver, obj))
     shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
@@ -197,7 +200,7 @@ def _settings_digest(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
         description = settings.describe(obj, scene, with_groups=False)
     except Refusal:
         return ""
-    return drift.whole_digest(drift.record(description, 0, ""))
+    return drift.whole_digest(drift.record(shape.steady(obj, description), 0, ""))
 
 
 def _valid_session(obj: bpy.types.Object, scene: bpy.types.Scene) -> Session | None:

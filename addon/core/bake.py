@@ -21,6 +21,7 @@ from .pc2 import Writer
 from .points import Affine, Points
 from .quantity import Numbers
 from .refusal import Refusal, cannot_write
+from .shape import Shape
 
 CHECKPOINT_SECONDS = 5.0
 """A kill loses at most about this much work; writing a checkpoint takes milliseconds."""
@@ -44,19 +45,21 @@ class Simulation(Protocol):
 
 
 class Pose(NamedTuple):
-    """What the scene says of a frame: where pins and colliders go (m, world space) and world to object space."""
+    """What the scene says of a frame: where pins and colliders go (m, world space), world to object space, the shape."""
 
     targets: Points | None
     """For all vertices; None without pins."""
     to_object: Affine
     colliders: Sequence[Points] = ()
+    shape: Shape = Shape()
 
     def aim(self, simulation: Simulation) -> None:
-        """Tell a simulation where pins and colliders go in the next frame."""
+        """Tell a simulation where pins and colliders go in the next frame, and what its shape is to be."""
         if self.targets is not None:
             simulation.set_pin_targets(0, self.targets)
         for number, targets in enumerate(self.colliders):
             simulation.set_collider_targets(number, targets)
+        self.shape.aim(simulation)
 
 
 class Plan(NamedTuple):

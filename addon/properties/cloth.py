@@ -9,6 +9,9 @@ from .cache import CacheProperties
 from .changes import FIXED, OVERRIDABLE, switched
 from .collisions import CollisionProperties
 from .forces import ForceProperties
+from .pressure import PressureProperties
+from .rest import RestProperties
+from .sewing import SewingProperties
 from .shape import ShapeProperties
 from .solver import SolverProperties
 from .springs import SpringProperties
@@ -17,6 +20,9 @@ from .springs import SpringProperties
 class BOUCLE_PG_cloth(
     SpringProperties,
     ShapeProperties,
+    RestProperties,
+    PressureProperties,
+    SewingProperties,
     CollisionProperties,
     ForceProperties,
     SolverProperties,

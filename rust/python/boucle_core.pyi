@@ -53,8 +53,8 @@ class Simulation:
         Args:
             scene: The scene file's keys as a JSON object, but `grid` and `mesh` of each cloth stand in `meshes`, `rest` in
                 `rests`, and `mesh` and `cache` of a collider in `colliders` and `set_collider_targets`.
-            meshes: For each cloth, in the scene's order: positions (m) that it starts from, float32 or float64 (n, 3), world space;
-                the first corner of each face, int32 (f,) or (f + 1,); the vertex of each corner, int32 (c,).
+            meshes: For each cloth, in the scene's order: positions (m) that it starts from, float32 or float64 (n, 3), world
+                space; the first corner of each face, int32 (f,) or (f + 1,); the vertex of each corner, int32 (c,).
             threads: 0 takes every core.
             colliders: The same arrays for each collider of the scene that has no `sphere`, `plane`, `box` or `capsule`, in the
                 scene's order: where it stands at the first frame.
@@ -172,8 +172,8 @@ class Simulation:
     def read_springs(self, cloth: int) -> tuple[bytes, bytes, bytes, bytes, bytes]:
         """Return the springs as native-endian bytes, in this order.
 
-        Ends int32 (s, 2); kind uint8 (s,) 0 stretch 1 shear 2 bend 3 sewing; rest length float64 (s,) (m); stiffness float64 (s,)
-        (N/m), as the limiter has it now; damping float64 (s,) (N·s/m).
+        Ends int32 (s, 2); kind uint8 (s,) 0 stretch 1 shear 2 bend 3 sewing; rest length float64 (s,) (m); stiffness float64
+        (s,) (N/m), as the limiter has it now; damping float64 (s,) (N·s/m).
         """
 
     def checkpoint(self) -> bytes:

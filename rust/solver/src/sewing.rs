@@ -6,7 +6,8 @@
 //! F = min(k d, F_max)          (N)          d = |x_i - x_j|
 //! ```
 //!
-//! as a spring of no rest length whose stiffness over a step is `min(k, F_max/d)`, d taken as the step begins. A seam that is
+//! as a spring of no rest length whose stiffness over a step is `s k`, `s = min(1, F_max/(k d))`, d taken as the step begins.
+//! Its damping is `sqrt(s)` times that of the closed seam: critical all the way, for the cloth that it draws. A seam that is
 //! welded has no limit and is many times as stiff: its ends stay where no load of cloth parts them visibly.
 
 use crate::cloth::{Cloth, placed};
@@ -23,8 +24,9 @@ struct Seam {
     cloth: usize,
     /// Its spring in the cloth.
     spring: usize,
-    /// (N/m)
+    /// (N/m) and (N·s/m)
     stiffness: f64,
+    damping: f64,
     /// (N); 0 for none.
     force_max: f64,
     /// (m); 0 for never.
@@ -51,6 +53,7 @@ impl Seams {
                 cloth: index,
                 spring: number,
                 stiffness: spring.stiffness,
+                damping: spring.damping,
                 force_max: sewing.force_max,
                 weld_distance: sewing.weld_distance,
                 is_welded: false,
@@ -100,7 +103,7 @@ impl Seams {
             (seam.is_welded, is_new) = (is_welded, true);
             let stiffness = if is_welded { WELDED * seam.stiffness } else { seam.stiffness };
             cloths[seam.cloth].springs[seam.spring].stiffness = stiffness;
-            layout.set_seam(number, stiffness);
+            layout.set_seam(number, stiffness, seam.damping);
         }
         is_new
     }
@@ -118,7 +121,7 @@ impl Seams {
             let distance = positions.distance_squared(a, b).sqrt();
             let pull = seam.stiffness * distance;
             let part = if pull > seam.force_max { seam.force_max / pull } else { 1.0 };
-            layout.set_seam(number, part * seam.stiffness);
+            layout.set_seam(number, part * seam.stiffness, part.sqrt() * seam.damping);
         }
     }
 }

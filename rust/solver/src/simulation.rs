@@ -14,7 +14,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::awake::with_others_awake;
 use crate::certificate::{Certificate, certify, length};
-use crate::cloth::{Cloth, FARTHEST, placed};
+use crate::cloth::{Cloth, placed};
 use crate::collider::Collider;
 use crate::contact::Contacts;
 use crate::digest::digest;
@@ -288,7 +288,7 @@ impl Simulation {
                     let step = Step { system, pins, h, number: substep, count: substeps, stride };
                     let is_short = step.run(state, method, contacts, limits);
                     let is_seen = watches || substep == substeps;
-                    let lost = if is_seen { first_lost(state) } else { None };
+                    let lost = if is_seen { state.first_lost() } else { None };
                     let too_long = (may_shorten && !is_short).then_some(Outcome::TooLong);
                     too_long.or(lost.map(Outcome::Lost))
                 });
@@ -392,14 +392,4 @@ impl Simulation {
         self.limits = (0..self.cloths.len()).filter_map(|cloth| self.limit_of(cloth)).collect();
         self.spectrum = Spectrum::of(&self.cloths, &self.system);
     }
-}
-
-/// The first particle that left the finite numbers, or the space in which numbers are fine enough.
-fn first_lost(state: &State) -> Option<usize> {
-    let is_lost = |&particle: &usize| {
-        let position = state.position.get(particle);
-        position.iter().any(|x| !(x.abs() <= 1e3 * FARTHEST))
-            || state.velocity.get(particle).iter().any(|v| !v.is_finite())
-    };
-    (0..state.len()).find(is_lost)
 }

@@ -58,8 +58,8 @@ impl Cloth {
         Ok(Self { positions, tailoring, ..self })
     }
 
-    /// The same cloth with seams: springs of no rest length, as stiff as stretch springs and critically damped. A seam takes
-    /// the place of a shear or bend spring between its ends.
+    /// The same cloth with seams: springs of no rest length, as stiff as stretch springs, and damped so that
+    /// the cloth that they draw together stops where they close. A seam takes the place of a shear or bend spring between its ends.
     ///
     /// # Errors
     /// [`Error::BadCloth`] when a seam does not join two vertices that no edge joins.
@@ -85,11 +85,16 @@ impl Cloth {
         }
         self.springs.retain(|spring| !seams.contains(&spring.ends));
         let stiffness = self.material.stiffness[0].max(LEAST_STIFFNESS);
-        let masses = &self.masses;
-        self.springs.extend(seams.iter().map(|&ends| {
-            let [a, b] = ends.map(|end| masses[end as usize]);
-            let damping = 2.0 * (stiffness * a * b / (a + b)).sqrt();
-            Spring { ends, kind: SpringKind::Sewing, rest_length: CLOSED, stiffness, damping }
+        // Half of the cloth on either side, shared out among the seams: the mass that one of them has to stop.
+        let mass = 0.25 * self.masses.iter().sum::<f64>() / seams.len().max(1) as f64;
+        let damping = 2.0 * (stiffness * mass).sqrt();
+        let kind = SpringKind::Sewing;
+        self.springs.extend(seams.iter().map(|&ends| Spring {
+            ends,
+            kind,
+            rest_length: CLOSED,
+            stiffness,
+            damping,
         }));
         self.tailoring.sewing = Some(Sewing { seams: seams.into_iter().collect(), ..sewing });
         self.check()?;

@@ -173,10 +173,12 @@ impl Layout {
             .collect();
     }
 
-    /// Gives both ends of a seam, by its number among all, another stiffness (N/m).
-    pub(crate) fn set_seam(&mut self, seam: usize, stiffness: f64) {
+    /// Gives both ends of a seam, by its number among all, another stiffness (N/m) and damping (N·s/m).
+    pub(crate) fn set_seam(&mut self, seam: usize, stiffness: f64, damping: f64) {
         for (slot, lane) in self.seams[seam] {
-            self.gather_slots[slot as usize].stiffness[lane as usize] = stiffness;
+            let slot = &mut self.gather_slots[slot as usize];
+            slot.stiffness[lane as usize] = stiffness;
+            slot.damping[lane as usize] = damping;
         }
     }
 

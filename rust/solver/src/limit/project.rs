@@ -115,13 +115,12 @@ impl Project {
     /// Takes the present rest lengths of a cloth's springs. The order of the edges stays.
     pub(super) fn follow_rest_lengths(&mut self, springs: &[Spring]) {
         if self.spring_of.is_empty() {
-            let edges = springs.iter().enumerate().filter(|(_, s)| s.kind == SpringKind::Stretch);
-            let number_of: BTreeMap<[u32; 2], u32> =
-                edges.map(|(number, spring)| (spring.ends, number as u32)).collect();
+            let numbered = springs.iter().map(|s| (s.kind, s.ends)).zip(0_u32..);
+            let number_of: BTreeMap<_, u32> = numbered.collect();
             let spring_of = |edge: &Edge| {
                 let (a, b) = (edge.near, edge.far);
-                let number = number_of.get(&[a, b]).or_else(|| number_of.get(&[b, a]));
-                number.copied().unwrap_or(u32::MAX)
+                let number = |ends| number_of.get(&(SpringKind::Stretch, ends)).copied();
+                number([a, b]).or_else(|| number([b, a])).unwrap_or(u32::MAX)
             };
             self.spring_of = self.edges.iter().map(spring_of).collect();
         }

@@ -3,7 +3,7 @@
 //! - `boundary`: the one place where errors, panics and threads meet the interpreter
 //! - `buffers`: arrays in and out, by the buffer protocol
 //! - `meshes`: meshes of cloths and colliders out of such arrays
-//! - `simulation`: the class `Simulation`
+//! - `simulation`: the class `Simulation`; `access`: what is inside it
 //! - `interrupter`: the class `Interrupter`
 //! - `bake`: the function `bake`
 //! - `geometry`: distances, collisions and intersections of many features at once
@@ -12,6 +12,7 @@
 //! imported, it has one function more, `_panic_for_tests(simulation=None)`, which panics inside the boundary as a fault of
 //! our own would: tests show with it what becomes of a panic.
 
+mod access;
 mod bake;
 mod boundary;
 mod buffers;

@@ -3,12 +3,11 @@
 use boucle_geometry::Vector;
 use boucle_scene::description::fields_from_json;
 use boucle_scene::report::FrameRow;
-use boucle_scene::{Assembly, Error, Scene};
-use boucle_solver::{Cloth, Collider};
+use boucle_scene::{Assembly, Scene};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::boundary::{compute, raise, raise_internal, refuse};
+use crate::boundary::{compute, raise, refuse};
 use crate::buffers;
 use crate::interrupter::Interrupter;
 use crate::meshes::{self, MeshArrays};
@@ -26,7 +25,7 @@ type SpringBytes<'py> = (
 #[pyclass(module = "boucle_core")]
 pub(crate) struct Simulation {
     /// `None` after a panic: nobody knows what state it left.
-    assembly: Option<Assembly>,
+    pub(crate) assembly: Option<Assembly>,
 }
 
 #[pymethods]
@@ -324,60 +323,6 @@ impl Simulation {
     }
 }
 
-impl Simulation {
-    /// Runs work on the simulation with the interpreter released; a panic breaks the simulation for good.
-    fn with<T: Send>(
-        &mut self,
-        py: Python<'_>,
-        work: impl Send + FnOnce(&mut Assembly) -> Result<T, Error>,
-    ) -> PyResult<T> {
-        let mut taken = self.assembly.take();
-        let Some(assembly) = taken.as_mut() else { return Err(broken(py)) };
-        let mut returned = false;
-        let outcome = compute(py, || {
-            let outcome = work(assembly);
-            returned = true;
-            outcome
-        });
-        if returned {
-            self.assembly = taken;
-        }
-        outcome
-    }
-
-    fn assembly(&self, py: Python<'_>) -> PyResult<&Assembly> {
-        self.assembly.as_ref().ok_or_else(|| broken(py))
-    }
-
-    /// The collider of a number that Python gave.
-    fn collider(&self, py: Python<'_>, collider: i64) -> PyResult<(usize, &Collider)> {
-        let simulation = &self.assembly(py)?.simulation;
-        let count = simulation.collider_count();
-        match usize::try_from(collider) {
-            Ok(index) if index < count => Ok((index, simulation.collider(index))),
-            _ => {
-                let accepted = match count {
-                    0 => "none, as there are no colliders".to_owned(),
-                    _ => format!("0 to {}", count - 1),
-                };
-                Err(refuse(py, format!("collider = {collider}; accepted: {accepted}")))
-            }
-        }
-    }
-
-    /// The cloth of a number that Python gave.
-    fn cloth(&self, py: Python<'_>, cloth: i64) -> PyResult<(usize, &Cloth)> {
-        let simulation = &self.assembly(py)?.simulation;
-        match usize::try_from(cloth) {
-            Ok(index) if index < simulation.cloth_count() => Ok((index, simulation.cloth(index))),
-            _ => {
-                let accepted = format!("0 to {}", simulation.cloth_count().saturating_sub(1));
-                Err(refuse(py, format!("cloth = {cloth}; accepted: {accepted}")))
-            }
-        }
-    }
-}
-
 /// Panics inside the boundary, on a simulation if one is given.
 #[pyfunction]
 #[pyo3(name = "_panic_for_tests", signature = (simulation = None))]
@@ -397,11 +342,6 @@ pub(crate) fn thread_count(py: Python<'_>, threads: i64) -> PyResult<usize> {
     let count = usize::try_from(threads).map_err(|_| refused())?;
     boucle_scene::limits::threads(count).map_err(|error| raise(py, &error))?;
     Ok(count)
-}
-
-fn broken(py: Python<'_>) -> PyErr {
-    let message = "the simulation was broken by an earlier fault of Boucle's own; make a new one";
-    raise_internal(py, message)
 }
 
 /// JSON as Python objects.

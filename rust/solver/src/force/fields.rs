@@ -8,8 +8,8 @@
 
 use boucle_geometry::Vector;
 
+use super::air::FaceAir;
 use super::field::{Field, Push, draw};
-use super::wind::FaceAir;
 
 /// Largest turn by magnetic fields in a step.
 const IMPLICIT_TURN: f64 = 0.5;

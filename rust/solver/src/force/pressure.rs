@@ -20,8 +20,6 @@
 //!
 //! Source: the law is that of Blender's cloth.
 
-use std::ops::Range;
-
 use boucle_geometry::Vector;
 use rayon::prelude::*;
 
@@ -324,7 +322,7 @@ impl Pressures {
     }
 
     /// The energy (J) of the fillings of some cloths: what they have yet to give, less what they had at V0.
-    pub(crate) fn energy(&self, cloths: Range<usize>, state: &State) -> f64 {
+    pub(crate) fn energy(&self, cloths: std::ops::Range<usize>, state: &State) -> f64 {
         let own = self.fillings.iter().filter(|filling| cloths.contains(&filling.cloth));
         let each = own.map(|filling| {
             let [uniform, factor, balance] = filling.now;

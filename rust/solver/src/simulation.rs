@@ -1,6 +1,7 @@
 //! A simulation as the outside holds it: cloths that move frame by frame.
 
 mod contact;
+mod holding;
 mod placing;
 mod plan;
 mod saving;
@@ -18,6 +19,7 @@ use crate::contact::Contacts;
 use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::force::Wind;
+use crate::grab::Grab;
 use crate::implicit::{Accuracy, Memory};
 use crate::kernel::CHUNK;
 use crate::law::spring::Law;
@@ -44,6 +46,7 @@ pub struct Simulation {
     spectrum: Spectrum,
     digest: u64,
     pins: Pins,
+    grab: Grab,
     contacts: Contacts,
     limits: Vec<Limit>,
     state: State,
@@ -117,13 +120,10 @@ impl Simulation {
             .thread_name(|index| format!("boucle-{index}"))
             .build()
             .map_err(|_| Error::Threads(settings.threads))?;
-        let pinned = bases
-            .iter()
-            .zip(&cloths)
-            .flat_map(|(base, cloth)| cloth.pins.iter().map(move |pin| base + pin));
         let system = System::new(&cloths, winds, settings.gravity);
         let mut simulation = Self {
-            pins: Pins::new(pinned, &state),
+            pins: Pins::new(&cloths, &state),
+            grab: Grab::default(),
             method: Method::new(&settings, &cloths, &system, &state),
             system,
             spectrum: Spectrum::default(),
@@ -149,6 +149,7 @@ impl Simulation {
             state,
             threads,
         };
+        simulation.follow_holds();
         simulation.follow_pins();
         simulation.intersect();
         simulation.plan()?;
@@ -176,31 +177,13 @@ impl Simulation {
         &self.cloths[cloth]
     }
 
-    /// Where the pins of a cloth are to be at the end of the next frame (m): a position for each vertex, of which
-    /// only the pinned are read. They move there in a straight line.
-    pub fn set_pin_targets(&mut self, cloth: usize, targets: &[Vector]) {
-        let base = self.bases[cloth];
-        self.pins.aim(|particle| {
-            let vertex = particle.checked_sub(base)?;
-            targets.get(vertex as usize).copied()
-        });
-    }
-
-    /// Lets pins go, with the velocity they have.
-    pub fn release_pins(&mut self, cloth: usize, vertices: &[u32]) {
-        let base = self.bases[cloth];
-        self.pins.release(|particle| {
-            particle.checked_sub(base).is_some_and(|vertex| vertices.contains(&vertex))
-        });
-        self.follow_pins();
-    }
-
     /// Moves on by one frame.
     ///
     /// # Errors
     /// [`Error::Diverged`] leaves the state of the last good frame; [`Error::TooManySubsteps`] and
     /// [`Error::Unstable`] leave the state as it is.
     pub fn advance(&mut self) -> Result<Certificate> {
+        self.gather_goals();
         let mut substeps = self.plan()?;
         self.keep();
         let mut outcome = self.run(substeps, false);
@@ -220,6 +203,7 @@ impl Simulation {
             return Err(self.diverged(first));
         }
         self.frame += 1;
+        self.end_holds();
         self.contacts.end_frame();
         self.clipped = self.contacts.take_clipped();
         self.intersect();
@@ -271,7 +255,15 @@ impl Simulation {
         threads.install(|| {
             with_others_awake(others, || {
                 let outcome = (1..=substeps).find_map(|substep| {
-                    let step = Step { system, pins, h, number: substep, count: substeps, stride };
+                    system.goals.start_step(substep, substeps);
+                    let step = Step {
+                        system: &*system,
+                        pins,
+                        h,
+                        number: substep,
+                        count: substeps,
+                        stride,
+                    };
                     let is_short = step.run(state, method, contacts, limits);
                     let is_seen = watches || substep == substeps;
                     let lost = if is_seen { first_lost(state) } else { None };
@@ -303,6 +295,7 @@ impl Simulation {
             intersections: self.intersections,
             clipped: self.clipped,
             contacts: self.contacts.count(),
+            potential_energy: certificate.potential_energy + self.system.goals.energy(&self.state),
             ..certificate
         }
     }
@@ -360,24 +353,6 @@ impl Simulation {
     fn particles(&self, cloth: usize) -> std::ops::Range<usize> {
         let base = self.bases[cloth] as usize;
         base..base + self.cloths[cloth].positions.len()
-    }
-
-    /// Rebuilds what depends on which particles are pinned.
-    fn follow_pins(&mut self) {
-        for particle in 0..self.state.len() {
-            self.system.set_pinned(particle, false);
-        }
-
-        for particle in self.pins.particles() {
-            self.system.set_pinned(particle as usize, true);
-        }
-        self.method.follow_pins(&self.system);
-        self.contacts.follow_pins(&self.system.inverse_masses);
-        let placed = self.cloths.iter().zip(&self.bases);
-        let inverse_masses = &self.system.inverse_masses;
-        self.limits =
-            placed.filter_map(|(cloth, &base)| Limit::of(cloth, base, inverse_masses)).collect();
-        self.spectrum = Spectrum::of(&self.cloths, &self.system);
     }
 }
 

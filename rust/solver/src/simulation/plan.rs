@@ -35,6 +35,7 @@ impl Simulation {
         let fall = self.settings.gravity.norm() * self.frame_duration();
         let pressure = air.pressure_damping(&self.state, inverse_masses, fall);
         let spectrum = self.spectrum.stiffened(factor).damped(pressure);
+        let spectrum = spectrum.with_goals(self.system.goals.largest_rates(inverse_masses));
         spectrum.largest_step(rule, self.frame_duration())
     }
 

@@ -29,6 +29,7 @@ mod resolution;
 mod robustness;
 mod scenes;
 mod sheets;
+mod soft_pins;
 mod stability;
 mod statics;
 mod swing;

@@ -54,7 +54,7 @@ impl Assembly {
         for (description, rest) in scene.cloth.iter().zip(meshes) {
             let at = format!("cloth.{}", description.name);
             let track = PinTrack::new(&description.pins, &format!("{at}.pins"), &rest)?;
-            cloths.push(cloth(scene, description, rest, track.vertices(), &at)?);
+            cloths.push(cloth(scene, description, rest, track.weighted(), &at)?);
             tracks.push(track);
         }
         let first_frame = scene.scene.frames[0];
@@ -136,7 +136,7 @@ fn cloth(
     scene: &Scene,
     description: &ClothDescription,
     rest: RestMesh,
-    pins: Vec<u32>,
+    (pins, pin_weights): (Vec<u32>, Vec<f64>),
     at: &str,
 ) -> Result<Cloth> {
     let colliders: Vec<&str> =
@@ -154,7 +154,8 @@ fn cloth(
         boucle_solver::Error::OutOfDomain { .. } => Error::input(format!("{at}.{error}")),
         other => Error::from(other),
     })?;
-    Ok(Cloth { collision, ..cloth })
+    let pin_material = description.pin_material();
+    Ok(Cloth { collision, pin_weights, pin_material, ..cloth })
 }
 
 fn wind(force: &Force, at: &str) -> Result<Wind> {

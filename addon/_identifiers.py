@@ -13,6 +13,7 @@ class Operators:
     RESTORE_BAKE = "boucle.restore_bake"
     ADOPT_BAKE = "boucle.adopt_bake"
     RESET = "boucle.reset"
+    GRAB = "boucle.grab"
     CHECK = "boucle.check"
 
 
@@ -61,4 +62,5 @@ TARGET_GROUP_MARK = "boucle_target_group"
 """Custom property that tells our node group from a stranger's of the same name."""
 
 CACHE_FOLDER = "boucle_cache"
+PICTURE_FOLDER = "boucle_pictures"
 LIVE_FOLDER = "boucle_live"

@@ -38,6 +38,7 @@ class BOUCLE_PT_cache(PhysicsPanel, Panel):
             row.operator(Operators.RESTORE_BAKE)
         if settings.is_foreign:
             layout.operator(Operators.ADOPT_BAKE)
+        layout.operator(Operators.GRAB, icon="VIEW_PAN")
         for line in settings.status.split("; "):
             draw_text(layout, line, context)
         if settings.certificate:

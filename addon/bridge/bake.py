@@ -20,6 +20,7 @@ from ..core.refusal import Refusal, sentence_of
 from . import (
     cache,
     live,
+    pins,
     preflight,
     registry,
     runtime,
@@ -99,12 +100,12 @@ class Bake:
         yield build
         solver = build.result()
         self.store = self._make_store(self._object(), description, record, solver)
-        is_pinned = simulation.is_pinned(description)
+        held = pins.Pins(description, record["vertices"])
 
         def pose_at(frame: int) -> Pose:
             if frame < self._began[1]:
                 self._began = (time.monotonic(), frame)
-            return self._pose(frame, is_pinned, met)
+            return self._pose(frame, held, met)
 
         try:
             yield from core_bake.bake(
@@ -162,9 +163,10 @@ class Bake:
         files = self.options.files or cache.own_files(obj)
         return Store(files, plan, rows, keeps_previous=self.options.files is None)
 
-    def _pose(self, frame: int, is_pinned: bool, met: Colliders) -> Pose:
-        depsgraph = self._go_to(frame)
-        return sampling.pose(self._object(), depsgraph, is_pinned, met.targets(depsgraph))
+    def _pose(self, frame: int, held: pins.Pins, met: Colliders) -> Pose:
+        depsgraph, obj = self._go_to(frame), self._object()
+        pose = sampling.pose(obj, depsgraph, held.are_there, met.targets(depsgraph))
+        return held.hold(pose, obj, depsgraph)
 
     def _attach(self, record: dict[str, Any]) -> None:
         """Play what is there, if it is the object's own cache; a folder elsewhere is left alone."""

@@ -148,11 +148,7 @@ def drift_of(obj: bpy.types.Object, scene: bpy.types.Scene, in_full: bool) -> li
         description = settings.describe(obj, scene, with_groups=in_full)
     except Refusal as refusal:
         return [str(refusal)]
-    if in_full:
-        now = settings.record(obj, description)
-    else:
-        now = drift.record(description, len(obj.data.vertices), "")
-    return drift.differences(then, now)
+    return drift.differences(then, settings.record(obj, description, with_faces=in_full))
 
 
 def is_foreign(obj: bpy.types.Object) -> bool:

@@ -19,6 +19,7 @@ import bpy
 
 from .. import native
 from ..core import drift, points, quantity
+from ..core.bake import Pose
 from ..core.live_frames import Action, Frame, LiveFrames
 from ..core.points import Points
 from ..core.progress import size
@@ -38,6 +39,7 @@ from . import (
 )
 from . import slot as slots
 from .colliders import Colliders
+from .pins import Pins
 
 EDITING_MODES = frozenset({"EDIT", "SCULPT", "WEIGHT_PAINT"})
 """Modes in which the artist works on the rest shape or on the pins."""
@@ -51,7 +53,7 @@ class Session:
     solver: Any
     """None after a fault: the kept frames can still be shown."""
     frames: LiveFrames
-    is_pinned: bool
+    pins: Pins
     colliders: Colliders
     display: display.Display
     basis: tuple[object, ...]
@@ -112,7 +114,7 @@ def _come_to_frame(
 ) -> None:
     if not sampling.is_evaluated(obj, depsgraph):
         return
-    session = _valid_session(obj, scene)
+    session = valid_session(obj, scene)
     frame = scene.frame_current
     if session is None:
         if frame not in (obj.boucle.frame_start, obj.boucle.frame_start + 1):
@@ -157,13 +159,13 @@ def _build(
     world = points.transform(local, matrix, "d")
     solver = simulation.maker(obj, description, world, colliders=met.arrays)()
     limit = memory_limit()
-    first = Frame(local, solver.certificate(), _read_numbers(solver, obj))
+    first = Frame(local, solver.certificate(), read_numbers(solver, obj))
     shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
     return Session(
         uid=obj.session_uid,
         solver=solver,
         frames=LiveFrames(obj.boucle.frame_start, first, limit),
-        is_pinned=simulation.is_pinned(description),
+        pins=Pins(description, len(obj.data.vertices)),
         colliders=met,
         display=shown,
         basis=_basis(obj, scene),
@@ -197,10 +199,10 @@ def _settings_digest(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
         description = settings.describe(obj, scene, with_groups=False)
     except Refusal:
         return ""
-    return drift.whole_digest(drift.record(description, 0, ""))
+    return drift.whole_digest(settings.record(obj, description, with_faces=False))
 
 
-def _valid_session(obj: bpy.types.Object, scene: bpy.types.Scene) -> Session | None:
+def valid_session(obj: bpy.types.Object, scene: bpy.types.Scene) -> Session | None:
     """The session, dropped if what it stands on has changed; a left-over frame gives way to the rest shape."""
     session = session_of(obj)
     if session is not None and session.basis != _basis(obj, scene):
@@ -215,8 +217,7 @@ def _step(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgrap
     if session.solver is None:
         return
     try:
-        targets = session.colliders.targets(depsgraph)
-        pose = sampling.pose(obj, depsgraph, session.is_pinned, targets)
+        pose = pose_of(session, obj, depsgraph)
     except Refusal as refusal:
         session.waits = session.refusal = str(refusal)
         return
@@ -224,24 +225,33 @@ def _step(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgrap
     try:
         pose.aim(session.solver)
         certificate = session.solver.advance()
-        positions = _read(session, pose.to_object, len(obj.data.vertices))
-        session.frames.add(Frame(positions, certificate, _read_numbers(session.solver, obj)))
+        positions = read_positions(session.solver, pose.to_object, len(obj.data.vertices))
+        session.frames.add(Frame(positions, certificate, read_numbers(session.solver, obj)))
     except native.FAILURES as error:
         session.solver = None
         _say(obj, f"{sentence_of(error)}; frames up to {session.frames.last} are kept")
 
 
-def _read(session: Session, to_object: points.Affine, vertex_count: int) -> Points:
+def pose_of(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Pose:
+    """Where pins and colliders go now."""
+    targets = session.colliders.targets(depsgraph)
+    pose = sampling.pose(obj, depsgraph, session.pins.are_there, targets)
+    return session.pins.hold(pose, obj, depsgraph)
+
+
+def read_positions(solver: Any, to_object: points.Affine, vertex_count: int) -> Points:
+    """Where the vertices are (m, object space), float32, flat."""
     if to_object == points.IDENTITY:
         out = points.empty("f", 3 * vertex_count)
-        session.solver.read_positions(0, out)
+        solver.read_positions(0, out)
         return out
     world = points.empty("d", 3 * vertex_count)
-    session.solver.read_positions(0, world)
+    solver.read_positions(0, world)
     return points.transform(world, to_object, "f")
 
 
-def _read_numbers(solver: Any, obj: bpy.types.Object) -> Numbers:
+def read_numbers(solver: Any, obj: bpy.types.Object) -> Numbers:
+    """The quantities at the vertices that the user wants to see."""
     out = quantity.empty(vertex_attributes.wanted(obj), len(obj.data.vertices))
     quantity.read(solver, out)
     return out
@@ -305,7 +315,7 @@ def revalidate(scene: bpy.types.Scene) -> None:
         elif obj.mode in EDITING_MODES or _sessions[uid].settings != _settings_digest(obj, scene):
             drop(obj)
     for obj in registry.cloths_of(scene):
-        session = _valid_session(obj, scene)
+        session = valid_session(obj, scene)
         if session is not None and _is_live(obj):
             session.display.show(obj, session.frames, scene.frame_current)
         show_attributes(obj, scene)

@@ -34,8 +34,3 @@ def maker(
     text = scene_json.encode(description)
     mesh = (rest_world, faces.starts, faces.corners)
     return lambda: native.simulation(text, [mesh], threads, colliders)
-
-
-def is_pinned(description: dict[str, Any]) -> bool:
-    """Whether anything holds the cloth."""
-    return bool(description["cloth"][0].get("pins"))

@@ -32,6 +32,8 @@ class Simulation(Protocol):
     frame: int
 
     def set_pin_targets(self, cloth: int, targets: Points) -> None: ...
+    def set_pin_weights(self, cloth: int, weights: Points) -> None: ...
+    def set_pin_stiffness(self, cloth: int, stiffness: float) -> None: ...
     def set_collider_targets(self, collider: int, targets: Points) -> None: ...
     def advance(self) -> dict[str, Any]: ...
     def certificate(self) -> dict[str, Any]: ...
@@ -43,6 +45,15 @@ class Simulation(Protocol):
     def restore(self, checkpoint: bytes) -> None: ...
 
 
+class Hold(NamedTuple):
+    """How firmly pins are held from a frame on."""
+
+    weights: Points
+    """0 free to 1 hard, one for each vertex of the mesh."""
+    stiffness: float
+    """(N/m), of pins that hang together, at weight 1."""
+
+
 class Pose(NamedTuple):
     """What the scene says of a frame: where pins and colliders go (m, world space) and world to object space."""
 
@@ -50,11 +61,16 @@ class Pose(NamedTuple):
     """For all vertices; None without pins."""
     to_object: Affine
     colliders: Sequence[Points] = ()
+    hold: Hold | None = None
+    """None if it is as before."""
 
     def aim(self, simulation: Simulation) -> None:
         """Tell a simulation where pins and colliders go in the next frame."""
         if self.targets is not None:
             simulation.set_pin_targets(0, self.targets)
+        if self.hold is not None:
+            simulation.set_pin_weights(0, self.hold.weights)
+            simulation.set_pin_stiffness(0, self.hold.stiffness)
         for number, targets in enumerate(self.colliders):
             simulation.set_collider_targets(number, targets)
 

@@ -24,6 +24,7 @@ _WORDS = {
 
 _VERTICES = {
     "pins.vertices": "pinned vertices",
+    "pins.weights": "weights of pins",
     "vertices": "vertices in the wind",
     "excluded_from_self": "vertices left out of self collision",
     "excluded_from_colliders": "vertices left out of collision with objects",

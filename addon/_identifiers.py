@@ -19,6 +19,7 @@ class Operators:
     EXPORT_USD = "boucle.export_usd"
     EXPORT_ALEMBIC = "boucle.export_alembic"
     RESET = "boucle.reset"
+    GRAB = "boucle.grab"
     CHECK = "boucle.check"
     ADD_MATERIAL = "boucle.add_material"
     ADD_HEAT_MAP_MATERIAL = "boucle.add_heat_map_material"
@@ -149,4 +150,5 @@ TARGET_GROUP_MARK = "boucle_target_group"
 """Custom property that tells our node group from a stranger's of the same name."""
 
 CACHE_FOLDER = "boucle_cache"
+PICTURE_FOLDER = "boucle_pictures"
 LIVE_FOLDER = "boucle_live"

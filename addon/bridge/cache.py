@@ -171,12 +171,7 @@ def _own_drift(
         description = settings.describe(obj, scene, with_groups=in_full)
     except Refusal as refusal:
         return [str(refusal)]
-    pushing = fields.record(obj, scene)
-    if in_full:
-        now = settings.record(obj, description, pushing)
-    else:
-        description = shape.steady(obj, description)
-        now = drift.record(description, len(obj.data.vertices), "", pushing)
+    now = settings.record(obj, description, fields.record(obj, scene), with_faces=in_full)
     return drift.differences(then, now)
 
 

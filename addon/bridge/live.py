@@ -19,7 +19,7 @@ import bpy
 
 from .. import native
 from ..core import drift, points, quantity, scene_json, settle
-from ..core.bake import Moment, push
+from ..core.bake import Moment
 from ..core.live_frames import Action, Frame, LiveFrames
 from ..core.points import Points
 from ..core.progress import size
@@ -42,6 +42,7 @@ from . import (
 from . import slot as slots
 from .colliders import Colliders
 from .fields import Fields
+from .pins import Pins
 
 EDITING_MODES = frozenset({"EDIT", "SCULPT", "WEIGHT_PAINT"})
 """Modes in which the artist works on the rest shape or on the pins."""
@@ -55,7 +56,7 @@ class Session:
     solver: Any
     """None after a fault: the kept frames can still be shown."""
     frames: LiveFrames
-    is_pinned: bool
+    pins: Pins
     colliders: Colliders
     fields: Fields
     display: display.Display
@@ -134,7 +135,7 @@ def _come_to_frame(
 ) -> None:
     if not sampling.is_evaluated(obj, depsgraph):
         return
-    session = _valid_session(obj, scene)
+    session = valid_session(obj, scene)
     frame = scene.frame_current
     if session is None:
         if frame not in (obj.boucle.frame_start, obj.boucle.frame_start + 1):
@@ -182,18 +183,19 @@ def _build(
         description, [simulation.mesh(obj, world)], colliders=met.arrays, rests=rests
     )
     solver = make()
-    pushing = Fields(obj, scene)
-    push(solver, pushing.sample(depsgraph))
+    pushing, held = Fields(obj, scene), Pins(description, 0, len(obj.data.vertices))
+    pose = sampling.pose(obj, depsgraph, held)
+    Moment([pose], met.targets(depsgraph), pushing.sample(depsgraph)).aim(solver)
     limit = memory_limit()
     if settle.run(solver, scene_json.settling(description), [len(obj.data.vertices)]):
-        local = _read(solver, to_object, len(obj.data.vertices))
-    first = Frame(local, solver.certificate(), _read_numbers(solver, obj))
+        local = read_positions(solver, to_object, len(obj.data.vertices))
+    first = Frame(local, solver.certificate(), read_numbers(solver, obj))
     shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
     return Session(
         uid=obj.session_uid,
         solver=solver,
         frames=LiveFrames(obj.boucle.frame_start, first, limit),
-        is_pinned=simulation.is_pinned(description, 0),
+        pins=held,
         colliders=met,
         fields=pushing,
         display=shown,
@@ -229,11 +231,11 @@ def _settings_digest(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
         description = settings.describe(obj, scene, with_groups=False)
     except Refusal:
         return ""
-    description = shape.steady(obj, description)
-    return drift.whole_digest(drift.record(description, 0, "", fields.record(obj, scene)))
+    pushing = fields.record(obj, scene)
+    return drift.whole_digest(settings.record(obj, description, pushing, with_faces=False))
 
 
-def _valid_session(obj: bpy.types.Object, scene: bpy.types.Scene) -> Session | None:
+def valid_session(obj: bpy.types.Object, scene: bpy.types.Scene) -> Session | None:
     """The session, dropped if what it stands on has changed; a left-over frame gives way to the rest shape."""
     session = session_of(obj)
     if session is not None and session.basis != _basis(obj, scene):
@@ -248,24 +250,31 @@ def _step(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgrap
     if session.solver is None:
         return
     try:
-        targets = session.colliders.targets(depsgraph)
-        forces = session.fields.sample(depsgraph)
-        pose = sampling.pose(obj, depsgraph, session.is_pinned)
+        moment = moment_of(session, obj, depsgraph)
     except Refusal as refusal:
         session.waits = session.refusal = str(refusal)
         return
     session.refusal = ""
     try:
-        Moment([pose], targets, forces).aim(session.solver)
+        moment.aim(session.solver)
         certificate = session.solver.advance()
-        positions = _read(session.solver, pose.to_object, len(obj.data.vertices))
-        session.frames.add(Frame(positions, certificate, _read_numbers(session.solver, obj)))
+        positions = read_positions(
+            session.solver, moment.poses[0].to_object, len(obj.data.vertices)
+        )
+        session.frames.add(Frame(positions, certificate, read_numbers(session.solver, obj)))
     except native.FAILURES as error:
         session.solver = None
         _say(obj, f"{sentence_of(error)}; frames up to {session.frames.last} are kept")
 
 
-def _read(solver: Any, to_object: points.Affine, vertex_count: int) -> Points:
+def moment_of(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Moment:
+    """Where pins and colliders go now, and what pushes."""
+    pose = sampling.pose(obj, depsgraph, session.pins)
+    return Moment([pose], session.colliders.targets(depsgraph), session.fields.sample(depsgraph))
+
+
+def read_positions(solver: Any, to_object: points.Affine, vertex_count: int) -> Points:
+    """Where the vertices are (m, object space), float32, flat."""
     if to_object == points.IDENTITY:
         out = points.empty("f", 3 * vertex_count)
         solver.read_positions(0, out)
@@ -275,7 +284,8 @@ def _read(solver: Any, to_object: points.Affine, vertex_count: int) -> Points:
     return points.transform(world, to_object, "f")
 
 
-def _read_numbers(solver: Any, obj: bpy.types.Object) -> Numbers:
+def read_numbers(solver: Any, obj: bpy.types.Object) -> Numbers:
+    """The quantities at the vertices that the user wants to see."""
     out = quantity.empty(vertex_attributes.wanted(obj), len(obj.data.vertices))
     quantity.read(solver, 0, out)
     return out
@@ -350,7 +360,7 @@ def revalidate(scene: bpy.types.Scene) -> None:
         elif obj.mode in EDITING_MODES or _sessions[uid].settings != _settings_digest(obj, scene):
             drop(obj)
     for obj in registry.cloths_of(scene):
-        session = _valid_session(obj, scene)
+        session = valid_session(obj, scene)
         if session is not None and _is_live(obj):
             session.display.show(obj, session.frames, scene.frame_current)
         show_attributes(obj, scene)

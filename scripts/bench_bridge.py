@@ -64,19 +64,19 @@ def measure_bake(bpy: Any, scene: str) -> dict[str, Any]:
             vertices_x=BAKE_SIDE, vertices_y=BAKE_SIDE, size_x=2.0, size_y=2.0, plane="xy"
         )
         cloth = bpy.context.object
-        cloth.location.z = 0.1 * number
+        cloth.location.z = 4.0 * number
         cloth.boucle.frame_start, cloth.boucle.frame_end = 1, BAKE_FRAMES
-        cloth.boucle.self_collision = scene != "held"
+        cloth.boucle.self_collision = False  # where little touches, the bridge weighs most
         cloth.boucle.use_strain = True
         cloths.append(cloth)
     if scene == "held, moving collider":
         bpy.ops.mesh.primitive_grid_add(
-            x_subdivisions=BAKE_SIDE, y_subdivisions=BAKE_SIDE, location=(0.0, 0.0, -0.5)
+            x_subdivisions=BAKE_SIDE, y_subdivisions=BAKE_SIDE, location=(0.0, 0.0, -6.0)
         )
         ground = bpy.context.object
         ground.modifiers.new("Collision", "COLLISION")
         ground.keyframe_insert("location", frame=1)
-        ground.location.z = -0.3
+        ground.location.z = -5.0
         ground.keyframe_insert("location", frame=BAKE_FRAMES)
     bpy.context.view_layer.update()
     bridge = importlib.import_module(f"{embedded.MODULE}.bridge.bake")

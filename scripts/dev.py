@@ -61,12 +61,22 @@ def gui(arguments: list[str]) -> None:
     window.gui(packaging.package(only_here=True), arguments)
 
 
-COMMANDS = {task.__name__: task for task in (demo, test, build, check, bench, package, gui)}
+def blender52(arguments: list[str]) -> None:
+    """the tests of the add-on in Blender 5.2 with Python 3.13 (needs root and the network; arguments go to pytest)"""
+    environment.set_up()
+    import blender52 as newest
+
+    newest.test(arguments)
+
+
+COMMANDS = {
+    task.__name__: task for task in (demo, test, build, check, bench, package, gui, blender52)
+}
 
 
 def usage() -> str:
     """The list of commands, a line each."""
-    lines = [f"  {name:8} {task.__doc__}" for name, task in COMMANDS.items()]
+    lines = [f"  {name:9} {task.__doc__}" for name, task in COMMANDS.items()]
     return "\n".join(["usage: python3 scripts/dev.py COMMAND", *lines])
 
 

@@ -18,7 +18,8 @@ from bpy_extras.view3d_utils import location_3d_to_region_2d
 
 MODULE = "bl_ext.user_default.boucle"
 ANSWER_SECONDS = 0.1
-"""A window that takes this much longer to answer than it does at rest feels stuck."""
+"""A window that takes longer to answer feels stuck. What drawing takes comes on top, twice of what it takes at rest: here
+software draws, on the cores that simulate."""
 TALL = (1920, 2700)
 BAKE_COLUMNS, BAKE_END = 64, 5000
 """A bake that no machine ends before Esc."""
@@ -115,12 +116,16 @@ def draw(seconds: float = 20.0) -> Step:
 
 
 def answers(seconds: float = 5.0) -> Step:
-    """Measure for a while how the window answers; without the viewport, which software draws slowly."""
+    """Measure for a while how a window that is always drawn anew answers; its viewport, which software draws slowly, is away."""
     view = area("VIEW_3D")
     view.type = "CONSOLE"
     yield 1.0
     measured = Answers()
-    yield seconds
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
+        for each in window().screen.areas:
+            each.tag_redraw()
+        yield 0.0
     result = measured.end()
     view.type = "VIEW_3D"
     yield 0.1
@@ -243,7 +248,7 @@ def bake_and_stop_with_escape() -> Step:
     yield from begin_bake(resume=False)
     seconds, said = yield from answers()
     said = f"{said}; at rest {said_at_rest}"
-    assert seconds <= at_rest + ANSWER_SECONDS, said
+    assert seconds <= 2.0 * at_rest + ANSWER_SECONDS, said
     assert is_baking(), f"the bake had ended before Esc: {cloth().boucle.status}"
     yield from photo("baking")
     pressed = time.monotonic()

@@ -44,7 +44,7 @@ def dev(*words, **environment_changes):
 def test_without_a_command_all_commands_are_listed():
     done = dev()
     assert done.returncode == 2
-    for name in ("demo", "test", "build", "check", "bench", "package", "gui"):
+    for name in ("demo", "test", "build", "check", "bench", "package", "gui", "blender52"):
         assert f"\n  {name} " in done.stdout
 
 

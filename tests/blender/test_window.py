@@ -225,7 +225,6 @@ def stop_a_long_frame(folder):
     from cloths import add_cloth
 
     obj = add_cloth(end=6, columns=30, rows=30, integrator="symplectic_euler")
-    obj.boucle.substeps = 30
     bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, "a.blend"))
     context = window([obj])
     baking = operator(context, [obj])

@@ -73,3 +73,18 @@ def test_a_digest_knows_its_parts_and_their_order():
     )
     record = drift.record(SCENE, 9, "t")
     assert drift.whole_digest(record) != drift.whole_digest(changed(("solver", "substeps"), 7))
+
+
+def test_what_is_animated_is_no_drift_and_the_rest_shape_has_its_word():
+    from boucle_addon.core import shape
+
+    def at_frame(shrink, rest="", moving=("shrink",)):
+        scene = copy.deepcopy(SCENE)
+        scene["cloth"][0]["shrink"] = {"min": shrink, "max": 0.0, "weights": [0.0, 1.0]}
+        return drift.record(shape.steady(scene, rest, moving), 9, "t")
+
+    assert drift.differences(at_frame(0.1), at_frame(0.2)) == []
+    assert drift.differences(at_frame(0.1, moving=()), at_frame(0.2, moving=())) == [
+        "shrinking factor"
+    ]
+    assert drift.differences(at_frame(0.1), at_frame(0.1, "Narrow")) == ["rest shape"]

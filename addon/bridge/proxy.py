@@ -131,6 +131,7 @@ def _decimate(proxy: bpy.types.Object, scene: bpy.types.Scene, ratio: float) -> 
             evaluated, preserve_all_data_layers=True, depsgraph=depsgraph
         )
     proxy.modifiers.remove(proxy.modifiers[modifier.name])
+    proxy.boucle.rest_shape_key = ""  # the coarse mesh has no shape keys
     old = proxy.data
     mesh.name = old.name
     proxy.data = mesh

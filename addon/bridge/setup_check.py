@@ -61,7 +61,7 @@ def _support(obj: bpy.types.Object, scene: bpy.types.Scene, world: Points) -> It
     group = obj.boucle.pin_group
     if group and obj.vertex_groups.get(group) is None:
         return  # said as an error of its own
-    if group and mesh_arrays.group_vertices(obj, group, settings.PIN_THRESHOLD):
+    if group and mesh_arrays.group_vertices(obj, group, settings.ANY):
         return
     why = f'no vertex is in the Pin Group "{group}"' if group else "no Pin Group is set"
     if not scene.use_gravity or scene.gravity.length == 0.0:

@@ -10,7 +10,7 @@ import bpy
 
 from ..core import points
 from ..core.points import Points
-from . import registry, runtime, sampling, settings
+from . import registry, runtime, sampling, settings, shape
 from .colliders import Arrays, Colliders
 
 
@@ -19,7 +19,9 @@ class Start(NamedTuple):
 
     description: dict[str, Any]
     world: Points
-    """Rest positions (m, world space), float64, flat."""
+    """Positions that it starts from (m, world space), float64, flat."""
+    rest: Points | None
+    """Rest positions (m, world space), where they are others."""
     colliders: Sequence[Arrays]
 
 
@@ -34,7 +36,8 @@ def sample(obj: bpy.types.Object, scene: bpy.types.Scene) -> Start:
         description = settings.describe(obj, scene, with_groups=True)
         matrix = sampling.object_matrix(obj, depsgraph)
         world = points.transform(sampling.targets(obj, depsgraph), matrix, "d")
-        return Start(description, world, Colliders(obj, scene, depsgraph).arrays)
+        met = Colliders([obj], scene, depsgraph)
+        return Start(description, world, shape.rest(obj, matrix), met.arrays)
 
 
 @contextmanager

@@ -39,7 +39,8 @@ def edges(obj: bpy.types.Object, scene: bpy.types.Scene) -> list[Edge]:
     if solver is None:
         start = start_pose.sample(obj, scene)
         alone = scene_json.without_contact(start.description)
-        solver = simulation.maker(obj, alone, start.world)()
+        mesh = simulation.mesh(obj, start.world)
+        solver = simulation.maker(alone, [mesh], rests=[start.rest])()
     lengths = worst.rest_lengths(solver.read_springs(0))
     world = points.transform(positions, mesh_arrays.world_matrix(obj), "d")
     return worst.edges(world, mesh_arrays.edges(obj.data), lengths)

@@ -116,7 +116,7 @@ def draw(seconds: float = 20.0) -> Step:
 
 
 def answers(seconds: float = 5.0) -> Step:
-    """Measure for a while how a window that is always drawn anew answers; its viewport, which software draws slowly, is away."""
+    """Measure for a while how a window that is always drawn anew answers; without the viewport, which software draws slowly."""
     view = area("VIEW_3D")
     view.type = "CONSOLE"
     yield 1.0
@@ -192,22 +192,27 @@ def add_from_the_menu() -> Step:
 
 
 def open_every_panel() -> Step:
-    """The Physics tab with each panel open, in a window that is tall enough."""
+    """The Physics tab with each panel open."""
     panels = panel_classes()
     for kind in reversed(panels):
         bpy.utils.unregister_class(kind)
     for kind in panels:  # all of them, so that their order stays
         kind.bl_options = set(getattr(kind, "bl_options", ())) - {"DEFAULT_CLOSED"}
         bpy.utils.register_class(kind)
+    yield from photo_of_panels("panels")
+    yield from photo("physics_tab")
+    return f"{len(panels)} panels"
+
+
+def photo_of_panels(name: str) -> Step:
+    """Photograph the whole Physics tab, in a window that is tall enough for the moment."""
     area("PROPERTIES").spaces[0].context = "PHYSICS"
     yield {"do": "resize", "size": TALL}
     yield 2.0
     assert window().height == TALL[1], f"the window has a height of {window().height}"
-    yield from photo("panels", area("PROPERTIES"))
+    yield from photo(name, area("PROPERTIES"))
     yield {"do": "resize", "size": None}
     yield 2.0
-    yield from photo("physics_tab")
-    return f"{len(panels)} panels"
 
 
 def panel_classes() -> list[type]:
@@ -242,6 +247,7 @@ def bake_and_stop_with_escape() -> Step:
     cloth().boucle.frame_end = BAKE_END
     bpy.context.scene.frame_set(1)
     with in_view():
+        bpy.ops.view3d.view_axis(type="FRONT")
         bpy.ops.view3d.view_all(center=True)
     yield over_view()
     at_rest, said_at_rest = yield from answers()
@@ -285,6 +291,7 @@ def resume_to_the_end() -> Step:
     yield 0.5
     assert sag(cloth()) > 0.005, f"the baked cloth hangs {sag(cloth())} m lower than at rest"
     yield from photo("baked")
+    yield from photo_of_panels("panels_baked")
     return status
 
 

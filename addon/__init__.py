@@ -8,7 +8,7 @@ import bpy
 from . import handlers, native, preferences
 from .bridge import live, runtime, thickness_view
 from .core.transaction import Step, apply_all, revert_all
-from .operators import add, bake
+from .operators import add, bake, sewing
 from .operators import cache as cache_operators
 from .operators import cloth as cloth_operators
 from .panels import cache as cache_panels
@@ -21,6 +21,7 @@ _CLASSES = (
     *preferences.CLASSES,
     *add.CLASSES,
     *cloth_operators.CLASSES,
+    *sewing.CLASSES,
     *bake.CLASSES,
     *cache_operators.CLASSES,
     *cloth_panels.CLASSES,

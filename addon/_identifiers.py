@@ -14,6 +14,7 @@ class Operators:
     ADOPT_BAKE = "boucle.adopt_bake"
     RESET = "boucle.reset"
     CHECK = "boucle.check"
+    ADD_WELD = "boucle.add_weld"
 
 
 class Panels:
@@ -59,6 +60,7 @@ REST_COUNT = "boucle_rest_count"
 
 TARGET_MODIFIER = "Boucle Target"
 CACHE_MODIFIER = "Boucle Cache"
+WELD_MODIFIER = "Boucle Weld"
 TARGET_GROUP = "Boucle Target"
 TARGET_GROUP_MARK = "boucle_target_group"
 """Custom property that tells our node group from a stranger's of the same name."""

@@ -13,7 +13,7 @@ from ..core import cache_paths, drift, pc2, report
 from ..core.cache_paths import CacheFiles
 from ..core.progress import size
 from ..core.refusal import Refusal, cannot_write
-from . import fields, registry, runtime, settings, shape, slot
+from . import fields, registry, runtime, settings, slot
 
 
 def absolute(obj: bpy.types.Object, path: str) -> str:

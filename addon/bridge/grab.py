@@ -28,6 +28,8 @@ from ..core.grip import Grip
 from ..core.live_frames import Frame, LiveFrames
 from ..core.refusal import Refusal
 from . import cache, live, registry, runtime, sampling
+from . import session as sessions
+from .session import Session
 
 REACH = 0.1
 """Part of the cloth's size that a hand holds around the vertex: the falloff's radius."""
@@ -100,7 +102,7 @@ class Grab:
             raise Refusal(
                 f'"{self.name}": its live state has ended, by a changed setting or mode: grab anew'
             )
-        moment = live.moment_of(self._session, obj, depsgraph)
+        moment = sessions.moment_of(self._session, obj, depsgraph)
         to_object = moment.poses[0].to_object
         solver, held, target = self._session.solver, self.grip, self._target
         count = len(obj.data.vertices)
@@ -112,7 +114,7 @@ class Grab:
             else:
                 solver.grab(0, held.vertices, target, held.weights)
             certificate = solver.advance()
-            return live.read_positions(solver, to_object, count), certificate
+            return sessions.read_positions(solver, to_object, count), certificate
 
         return Step(self.frame, work)
 
@@ -130,7 +132,9 @@ class Grab:
         except native.InternalError:
             self._session.solver = None
             raise
-        self._keep(Frame(positions, certificate, live.read_numbers(self._session.solver, obj)), obj)
+        self._keep(
+            Frame(positions, certificate, sessions.read_numbers(self._session.solver, obj)), obj
+        )
 
     def end(self) -> None:
         """Open the hand and give the cloth back to the timeline."""
@@ -140,7 +144,7 @@ class Grab:
 
     def _keep(self, frame: Frame, obj: bpy.types.Object) -> None:
         """Make a frame the only one that the session knows: the state of the frame at which the scene stands."""
-        self._session.frames = LiveFrames(self.frame, frame, live.memory_limit())
+        self._session.frames = LiveFrames(self.frame, frame, sessions.memory_limit())
         self._session.display.begin_again(obj)
         self._session.display.show(obj, self._session.frames, self.frame)
 
@@ -153,7 +157,7 @@ class Grab:
 
 def _begin_or_go_on(
     obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
-) -> live.Session:
+) -> Session:
     """The session that there is, or a new one with the present pose as the rest pose.
 
     Raises:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bpy.types import Context, Panel
 
-from .._identifiers import PanelOrder, Panels
+from .._identifiers import Operators, PanelOrder, Panels
 from .cloth import PhysicsPanel
 
 
@@ -84,6 +84,7 @@ class BOUCLE_PT_sewing(PhysicsPanel, Panel):
         column.active = settings.use_sewing_springs
         column.prop(settings, "sewing_force_max")
         column.prop(settings, "weld_distance")
+        column.operator(Operators.ADD_WELD, icon="AUTOMERGE_ON")
 
 
 CLASSES = (BOUCLE_PT_rest_shape, BOUCLE_PT_pressure, BOUCLE_PT_sewing)

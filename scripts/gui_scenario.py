@@ -20,7 +20,7 @@ MODULE = "bl_ext.user_default.boucle"
 ANSWER_SECONDS = 0.1
 """A window that takes longer to answer feels stuck. What drawing takes comes on top, twice of what it takes at rest: here
 software draws, on the cores that simulate."""
-TALL = (1920, 2700)
+TALL = (1920, 3600)
 BAKE_COLUMNS, BAKE_END = 64, 5000
 """A bake that no machine ends before Esc."""
 FRAMES_MORE, FRAMES_MORE_SECONDS = 10, 240
@@ -98,11 +98,10 @@ def key(name: str) -> dict:
     return {"do": "key", "key": name}
 
 
-def draw(seconds: float = 20.0) -> Step:
-    """Wait until the viewport and all else was drawn anew, and a moment more for the screen to show it."""
+def draw(kind: type = bpy.types.SpaceView3D, seconds: float = 20.0) -> Step:
+    """Wait until the window was drawn anew, as an editor of this kind tells, and a moment more for the screen to show it."""
     drawn: list[bool] = []
-    view = bpy.types.SpaceView3D
-    handler = view.draw_handler_add(drawn.append, (True,), "WINDOW", "POST_PIXEL")
+    handler = kind.draw_handler_add(drawn.append, (True,), "WINDOW", "POST_PIXEL")
     until = time.monotonic() + seconds
     try:
         while len(drawn) < 2:
@@ -111,7 +110,7 @@ def draw(seconds: float = 20.0) -> Step:
                 each.tag_redraw()
             yield 0.1
     finally:
-        view.draw_handler_remove(handler, "WINDOW")
+        kind.draw_handler_remove(handler, "WINDOW")
     yield 0.5
 
 
@@ -134,7 +133,7 @@ def answers(seconds: float = 5.0) -> Step:
 
 def photo(name: str, part: bpy.types.Area | None = None) -> Step:
     """Photograph the window or one area, after it was drawn anew."""
-    yield from draw()
+    yield from draw() if part is None else draw(type(part.spaces.active))
     box = None
     if part is not None:
         left, top = on_screen(part.x, part.y + part.height)
@@ -206,13 +205,16 @@ def open_every_panel() -> Step:
 
 def photo_of_panels(name: str) -> Step:
     """Photograph the whole Physics tab, in a window that is tall enough for the moment."""
-    area("PROPERTIES").spaces[0].context = "PHYSICS"
+    view, properties = area("VIEW_3D"), area("PROPERTIES")
+    properties.spaces.active.context = "PHYSICS"
+    view.type = "CONSOLE"  # software draws a large viewport slowly
     yield {"do": "resize", "size": TALL}
     yield 2.0
     assert window().height == TALL[1], f"the window has a height of {window().height}"
-    yield from photo(name, area("PROPERTIES"))
+    yield from photo(name, properties)
     yield {"do": "resize", "size": None}
-    yield 2.0
+    view.type = "VIEW_3D"
+    yield 1.0
 
 
 def panel_classes() -> list[type]:

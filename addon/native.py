@@ -71,6 +71,7 @@ def simulation(
     meshes: Sequence[tuple[Any, Any, Any]],
     threads: int = 0,
     colliders: Sequence[tuple[Any, Any, Any]] = (),
+    rests: Sequence[Any] = (),
 ) -> Any:
     """A new simulation; see `boucle_core.Simulation`.
 
@@ -81,4 +82,4 @@ def simulation(
     if problem():
         raise Refusal(problem())
     make: Callable[..., Any] = _core.Simulation
-    return make(scene, meshes, threads, colliders)
+    return make(scene, meshes, threads, colliders, rests)

@@ -65,6 +65,14 @@ def weave_in(cloth: bpy.types.Object) -> None:
     values["Second Color"].default_value = (*SECOND_YARN, 1.0)
 
 
+def flatten(cloth: bpy.types.Object) -> None:
+    """Leave the loops their colours but no relief: in a small video they are less than two pixels wide and would flicker."""
+    for node in cloth.active_material.node_tree.nodes:
+        if node.type == "GROUP":
+            bump = next(inner for inner in node.node_tree.nodes if inner.type == "BUMP")
+            node.node_tree.nodes.remove(bump)
+
+
 def build_room() -> None:
     """A floor that bends up into a wall, so that no edge shows."""
     radius, steps = 0.7, 24

@@ -16,19 +16,19 @@ from pathlib import Path
 from typing import Any
 
 FRAMES = 60
-GATHER = (5, 32)
+GATHER = (3, 28)
 """Frames between which the curtain is drawn together."""
 WIDTH = 1.7
 HEIGHT = 1.8
 VERTICES = 96
 ROD = 1.36
 """Length (m) of what is seen of the rod when the curtain is drawn together."""
-RINGS = 7
+RINGS = 11
 GATHERED = 0.54
 """Distance of the rings when drawn together, as a fraction of what it was."""
-PLEAT = 0.05
+PLEAT = 0.04
 """m; every other ring's point goes forward by this, the rest back."""
-STILL = {"frame": 52, "width": 560, "height": 700, "samples": 14}
+STILL = {"frame": 58, "width": 560, "height": 700, "samples": 14}
 VIDEO = {"width": 288, "height": 360, "samples": 4}
 
 
@@ -57,8 +57,8 @@ def bake(folder: Path) -> None:
     settings = cloth.boucle
     settings.frame_start, settings.frame_end = 1, FRAMES
     settings.density = 0.3
-    settings.stretch, settings.shear, settings.bend = 600.0, 60.0, 1.5
-    settings.damping = 0.004
+    settings.stretch, settings.shear, settings.bend = 600.0, 60.0, 1.0
+    settings.damping = 0.008
     settings.deformation_rate = 0.10
     pins = hang(cloth)
     demo_look.dress(cloth, ROD)
@@ -149,6 +149,7 @@ def video(folder: Path) -> None:
     bpy = open_without_addon(folder)
     import demo_look
 
+    demo_look.flatten(bpy.data.objects["Curtain"])
     demo_look.prepare_render(VIDEO["width"], VIDEO["height"], VIDEO["samples"])
     render = bpy.context.scene.render
     render.image_settings.file_format = "FFMPEG"

@@ -45,15 +45,23 @@ def bench(arguments: list[str]) -> None:
     run([venv_program(VENV, "python"), SCRIPTS / "bench.py", *arguments])
 
 
-def package(_arguments: list[str]) -> None:
-    """the extension as out/package/*.zip, checked by Blender's own tool and installed once"""
-    environment.set_up()
+def package(arguments: list[str]) -> None:
+    """the extension as out/package/*.zip, one per platform, checked and installed once (--here: this machine's alone)"""
     import package as packaging
 
-    packaging.package()
+    packaging.package(only_here="--here" in arguments)
 
 
-COMMANDS = {task.__name__: task for task in (demo, test, build, check, bench, package)}
+def gui(arguments: list[str]) -> None:
+    """the packaged extension in a real Blender's window: pictures in out/gui/ (needs root and the network)"""
+    import gui as window
+    import package as packaging
+
+    window.require()
+    window.gui(packaging.package(only_here=True), arguments)
+
+
+COMMANDS = {task.__name__: task for task in (demo, test, build, check, bench, package, gui)}
 
 
 def usage() -> str:

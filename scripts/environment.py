@@ -195,13 +195,16 @@ def sources_digest() -> str:
     return digest.hexdigest()
 
 
-def build_wheel(folder: Path, *options: str, first_on_path: Path | None = None) -> Path:
+def build_wheel(
+    folder: Path, *options: str, first_on_path: Path | None = None, **variables: str
+) -> Path:
     """Compile the module for release and pack it as the only wheel in `folder`.
 
     Args:
         folder: Emptied first.
         options: More words for maturin.
         first_on_path: Folder of programs that the compiler must find before others.
+        variables: More of the environment.
 
     Raises:
         Failed: The compiler refused, or the wheel is not for every Python from 3.11 on.
@@ -211,7 +214,16 @@ def build_wheel(folder: Path, *options: str, first_on_path: Path | None = None) 
     command = [python, "-m", "maturin", "build", "--release", "--out", folder]
     command += ["--manifest-path", ROOT / "rust" / "python" / "Cargo.toml"]
     path = os.pathsep.join(filter(None, [str(first_on_path or ""), os.environ.get("PATH", "")]))
-    run([*command, "--interpreter", python, *options], PATH=path)
+    run([*command, "--interpreter", python, *options], PATH=path, **variables)
+    return only_wheel(folder)
+
+
+def only_wheel(folder: Path) -> Path:
+    """The wheel in a folder, for every Python from 3.11 on.
+
+    Raises:
+        Failed: There is another, or none.
+    """
     wheels = list(folder.glob("*.whl"))
     if len(wheels) != 1 or "-abi3-" not in wheels[0].name:
         raise Failed(f"expected one abi3 wheel, got {[wheel.name for wheel in wheels]}")

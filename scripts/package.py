@@ -1,17 +1,19 @@
-"""The extension as zips that Blender installs, one per platform that can be built here.
+"""The extension as zips that Blender installs, one per platform.
 
-Numbered: build the wheel against an old C library, check what it needs, stage addon/ with the wheel named in the
-manifest, let Blender's own tool build and validate the zip, install that zip in Blender and use it once.
-Standard library only.
+Numbered: compile the module for each platform (platforms.py), check what it needs (wheel_check.py), run the tests of the one
+for Linux on ARM (arm64.py), stage addon/ with the wheels named in the manifest, let Blender's own tool build and validate
+the zips, install that of this machine in Blender and use it once.
 """
 
 from __future__ import annotations
 
+import json
 import shutil
+import sys
 import tempfile
-import zipfile
 from pathlib import Path
 
+import platforms
 from environment import (
     OTHER_BLENDERS,
     OUT,
@@ -19,81 +21,89 @@ from environment import (
     SCRIPTS,
     VENV,
     Failed,
+    Missing,
     blender_venv,
-    build_wheel,
     ensure_venv,
     exclusive,
     heading,
+    require_rust,
     run,
     venv_program,
 )
-from shared_library import needed_libraries
+from platforms import Platform
 
-PLATFORM = "linux-x64"
-WHEEL_MAX_BYTES = 5_000_000
-SYSTEM_LIBRARIES = ("libc.so.", "libm.so.", "libpthread.so.", "libdl.so.", "librt.so.", "ld-linux")
-"""The C library's own family; every Linux that Blender runs on has it."""
+FOLDER = OUT / "package"
+ZIP_MAX_BYTES = 8_000_000
 
 
-def package() -> None:
-    """Make and check out/package/*.zip."""
-    folder = OUT / "package"
-    with exclusive():
-        ensure_venv(VENV, "requirements.txt", "requirements-package.txt")
-        with heading("Compile the module for old systems too"):
-            programs = venv_program(VENV, "python").parent
-            wheel = build_wheel(
-                folder / "wheels",
-                "--zig",
-                "--compatibility",
-                "manylinux_2_28",
-                first_on_path=programs,
-            )
-    check_wheel(wheel)
-    staging = folder / "staging"
-    stage(wheel, staging)
-    with heading("Build and validate the zip with Blender's tool"):
-        zips = build_zips(staging, folder)
-    for file in zips:
-        for venv in (VENV, *map(blender_venv, OTHER_BLENDERS)):
-            if venv_program(venv, "python").exists():
-                with heading(f"Install {file.name} in the Blender of {venv.name}"):
-                    try_install(file, venv)
-    for file in zips:
-        print(f"{file.relative_to(ROOT)}: {file.stat().st_size / 1e6:.2f} MB")
-
-
-def check_wheel(wheel: Path) -> None:
-    """Check that the wheel is small and needs the C library alone.
+def package(only_here: bool = False) -> Path:
+    """Make and check out/package/*.zip, for every platform or for this machine's alone; this machine's zip.
 
     Raises:
-        Failed: It does not; the message names what is too much.
+        Failed: A platform could not be done, or its zip is not as it must be; the others are made all the same.
     """
-    size = wheel.stat().st_size
-    if size >= WHEEL_MAX_BYTES:
-        raise Failed(f"{wheel.name} has {size} bytes, {WHEEL_MAX_BYTES} are allowed")
-    with zipfile.ZipFile(wheel) as archive:
-        libraries = [name for name in archive.namelist() if name.endswith(".so")]
-        if len(libraries) != 1:
-            raise Failed(f"{wheel.name} holds {libraries}, one compiled module is expected")
-        needed = needed_libraries(archive.read(libraries[0]))
-    foreign = [name for name in needed if not name.startswith(SYSTEM_LIBRARIES)]
-    if foreign:
-        raise Failed(f"{wheel.name} needs {foreign}, which Blender may not have")
-    print(f"   {wheel.name}: {size / 1e6:.2f} MB, needs {', '.join(needed)}")
+    require_rust()
+    with exclusive():
+        ensure_venv(VENV, "requirements.txt", "requirements-package.txt")
+    wheels, faults = make_wheels([platforms.here()] if only_here else [*platforms.PLATFORMS])
+    staging = FOLDER / "staging"
+    stage(wheels, staging)
+    with heading("Build and validate the zips with Blender's tool"):
+        zips = build_zips(staging, FOLDER, [*wheels])
+    mine = zips.get(platforms.here().name)
+    if mine is not None:
+        try_everywhere(mine)
+    for file in zips.values():
+        print(f"{file.relative_to(ROOT)}: {file.stat().st_size / 1e6:.2f} MB")
+    if faults:
+        raise Failed("not packaged:\n  " + "\n  ".join(faults))
+    return mine
 
 
-def stage(wheel: Path, staging: Path) -> None:
-    """Copy addon/ and put the wheel into the copy, named in its manifest."""
+def make_wheels(wanted: list[Platform]) -> tuple[dict[str, Path], list[str]]:
+    """A checked wheel for each platform, by its name, and a sentence for each that could not be had."""
+    check = [venv_program(VENV, "python"), SCRIPTS / "wheel_check.py"]
+    wheels, faults = {}, []
+    for platform in wanted:
+        try:
+            with heading(f"Compile the module for {platform.name}"):
+                wheel = platforms.wheel_for(platform)
+                run([*check, wheel, platform.name, platform.tag])
+            if platform.name == "linux-arm64" != platforms.here().name:
+                import arm64
+
+                arm64.test(wheel)
+        except (Missing, Failed) as fault:
+            print(f"   {platform.name}: {fault}", file=sys.stderr, flush=True)
+            faults.append(f"{platform.name}: {fault}")
+        else:
+            wheels[platform.name] = wheel
+    if not wheels:
+        raise Failed("not packaged:\n  " + "\n  ".join(faults))
+    return wheels, faults
+
+
+def try_everywhere(file: Path) -> None:
+    """Install a zip in every Blender that the tests have made ready."""
+    for venv in (VENV, *map(blender_venv, OTHER_BLENDERS)):
+        if venv_program(venv, "python").exists():
+            with heading(f"Install {file.name} in the Blender of {venv.name}"):
+                try_install(file, venv)
+
+
+def stage(wheels: dict[str, Path], staging: Path) -> None:
+    """Copy addon/ and put the wheels into the copy, named with their platforms in its manifest."""
     shutil.rmtree(staging, ignore_errors=True)
     ignored = shutil.ignore_patterns("__pycache__", "*.pyc", ".*")
     shutil.copytree(ROOT / "addon", staging, ignore=ignored)
     (staging / "wheels").mkdir()
-    shutil.copy2(wheel, staging / "wheels" / wheel.name)
+    for wheel in wheels.values():
+        shutil.copy2(wheel, staging / "wheels" / wheel.name)
     shutil.copy2(ROOT / "LICENSE", staging / "LICENSE")
     manifest = staging / "blender_manifest.toml"
     head, table, tables = manifest.read_text(encoding="utf-8").partition("\n[")
-    lines = f'platforms = ["{PLATFORM}"]\nwheels = ["./wheels/{wheel.name}"]\n'
+    files = [f"./wheels/{wheel.name}" for wheel in wheels.values()]
+    lines = f"platforms = {json.dumps([*wheels])}\nwheels = {json.dumps(files)}\n"
     manifest.write_text(f"{head}\n{lines}{table}{tables}", encoding="utf-8")
 
 
@@ -105,17 +115,26 @@ def extension_tool(venv: Path) -> Path:
     return found[-1]
 
 
-def build_zips(staging: Path, folder: Path) -> list[Path]:
-    """Let Blender's tool build one zip per platform and validate each."""
+def build_zips(staging: Path, folder: Path, names: list[str]) -> dict[str, Path]:
+    """Let Blender's tool build one zip for each named platform, and validate each.
+
+    Raises:
+        Failed: A zip is missing, refused or too large.
+    """
     for old in folder.glob("*.zip"):
         old.unlink()
     tool = [venv_program(VENV, "python"), extension_tool(VENV)]
     run([*tool, "build", "--split-platforms", "--source-dir", staging, "--output-dir", folder])
-    zips = sorted(folder.glob("*.zip"))
-    if not zips:
-        raise Failed("Blender's tool left no zip")
-    for file in zips:
-        run([*tool, "validate", file])
+    zips = {}
+    for name in names:
+        found = [*folder.glob(f"*-{name.replace('-', '_')}.zip")]
+        if len(found) != 1:
+            raise Failed(f"Blender's tool left {len(found)} zips for {name}")
+        run([*tool, "validate", found[0]])
+        size = found[0].stat().st_size
+        if size >= ZIP_MAX_BYTES:
+            raise Failed(f"{found[0].name} has {size} bytes, {ZIP_MAX_BYTES} are allowed")
+        zips[name] = found[0]
     return zips
 
 

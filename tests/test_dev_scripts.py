@@ -1,22 +1,29 @@
 """dev.py and what stands beside it: what is missing is said in one line, counts add up, yardsticks agree."""
 
 import os
+import shutil
+import struct
 import subprocess
 import sys
 import time
 import tomllib
 import xml.etree.ElementTree as ElementTree
+import zipfile
 from pathlib import Path
 
 import boucle_core
+import pip
 import pytest
 
+import debian
 import environment
+import gui
 import package
+import platforms
 import verify
+import wheel_check
 from bench_explicit import STEPS_PER_FRAME, difference_after_a_frame
 from numpy_cloth import ALL_STEPS, Sheet
-from shared_library import needed_libraries
 
 ROOT = Path(__file__).resolve().parents[1]
 SECONDS = 60
@@ -37,7 +44,7 @@ def dev(*words, **environment_changes):
 def test_without_a_command_all_commands_are_listed():
     done = dev()
     assert done.returncode == 2
-    for name in ("demo", "test", "build", "check", "bench", "package"):
+    for name in ("demo", "test", "build", "check", "bench", "package", "gui"):
         assert f"\n  {name} " in done.stdout
 
 
@@ -99,27 +106,140 @@ def test_a_run_that_ends_badly_without_a_failed_test_counts_as_failed():
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads Linux libraries")
 def test_the_compiled_module_needs_no_python_library():
     library = next(Path(boucle_core.__file__).parent.glob("*.so"))
-    needed = needed_libraries(library.read_bytes())
-    assert "libc.so.6" in needed
-    assert [name for name in needed if "python" in name] == []
+    read = wheel_check.read(library.read_bytes())
+    assert "libc.so.6" in read.needs
+    assert [name for name in read.needs if "python" in name] == []
+    assert read.oldest > (2, 2)
+    assert wheel_check.ENTRY in read.exports
+
+
+def test_a_windows_program_is_read():
+    launcher = next(Path(pip.__file__).parent.glob("_vendor/distlib/t64.exe"))
+    read = wheel_check.read(launcher.read_bytes())
+    assert read.platform == "windows-x64"
+    assert "KERNEL32.dll" in read.needs
+
+
+def macos_library(minimum, needs):
+    """A Mach-O library for ARM that has nothing but its head."""
+    path = needs.encode().ljust(len(needs) // 8 * 8 + 8, b"\0")
+    version = struct.pack("<6I", 0x32, 24, 1, minimum[0] << 16 | minimum[1] << 8, 0, 0)
+    load = struct.pack("<6I", 0xC, 24 + len(path), 24, 0, 0, 0) + path
+    segment = struct.pack("<2I16s4Q4I", 0x19, 72, b"__TEXT", 0, 0x4000, 0, 0x4000, 5, 5, 0, 0)
+    commands = segment + version + load
+    head = struct.pack("<8I", 0xFEEDFACF, 0x100000C, 0, 6, 3, len(commands), 0x85, 0)
+    return (head + commands).ljust(0x4000, b"\0")
+
+
+def test_a_macos_library_is_read():
+    read = wheel_check.read(macos_library((12, 3), "/opt/libpython3.11.dylib"))
+    assert (read.platform, read.oldest) == ("macos-arm64", (12, 3))
+    assert read.needs == ("/opt/libpython3.11.dylib",)
 
 
 def test_what_is_no_library_is_refused():
-    with pytest.raises(ValueError, match="not a 64-bit"):
-        needed_libraries(b"MZ")
+    with pytest.raises(ValueError, match="neither an ELF"):
+        wheel_check.read(b"no library")
 
 
-def test_the_staged_manifest_names_its_wheel_and_keeps_the_rest(tmp_path):
-    wheel = tmp_path / "boucle_core-9.9.9-cp311-abi3-any.whl"
-    wheel.write_bytes(b"")
-    package.stage(wheel, tmp_path / "staging")
+GOOD = {
+    "linux-x64": (("libc.so.6", "ld-linux-x86-64.so.2"), (2, 28)),
+    "linux-arm64": (("libc.so.6", "ld-linux-aarch64.so.1"), (2, 17)),
+    "windows-x64": (("python3.dll", "KERNEL32.dll", "api-ms-win-core-synch-l1-2-0.dll"), (0,)),
+    "macos-arm64": (("/usr/lib/libSystem.B.dylib",), (11, 0)),
+    "macos-x64": (("/usr/lib/libSystem.B.dylib",), (10, 13)),
+}
+
+
+def library(platform, needs=None, oldest=None, exports=(wheel_check.ENTRY,)):
+    """A library that is as it must be, but for what is told."""
+    good_needs, good_oldest = GOOD[platform]
+    return wheel_check.Library(
+        platform, needs or good_needs, oldest or good_oldest, frozenset(exports)
+    )
+
+
+@pytest.mark.parametrize("platform", GOOD)
+def test_a_good_library_is_accepted_on_its_own_platform_only(platform):
+    assert [p.name for p in platforms.PLATFORMS if p.name == platform] == [platform]
+    assert wheel_check.complaints(library(platform), platform) == []
+    for other in GOOD.keys() - {platform}:
+        wrong = wheel_check.complaints(library(platform), other)
+        assert wrong[0] == f"is for {platform}, not for {other}"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "complaint"),
+    [
+        (library("linux-x64", needs=("libc.so.6", "libpython3.11.so.1.0")), "needs libpython3.11"),
+        (library("linux-x64", oldest=(2, 35)), "asks for the C library 2.35, 2.28 is allowed"),
+        (library("windows-x64", needs=("python311.dll",)), "needs python311.dll"),
+        (library("windows-x64", needs=("KERNEL32.dll",)), "does not import python3.dll"),
+        (library("macos-arm64", needs=("@rpath/libpython3.11.dylib",)), "needs @rpath/libpython"),
+        (library("macos-x64", oldest=(14, 0)), "asks for macOS 14.0, 11.0 is allowed"),
+        (library("macos-x64", exports=("PyInit_other",)), "has no PyInit_boucle_core"),
+    ],
+)
+def test_what_blender_has_not_is_told(wrong, complaint):
+    assert wheel_check.complaints(wrong, wrong.platform)[0].startswith(complaint)
+
+
+def test_a_wheel_of_another_name_is_refused(tmp_path):
+    compiled = next(Path(boucle_core.__file__).parent.glob("boucle_core*"))
+    wheel = tmp_path / "boucle_core-9.9.9-cp311-cp311-linux_x86_64.whl"
+    with zipfile.ZipFile(wheel, "w") as archive:
+        archive.write(compiled, "boucle_core/boucle_core.abi3.so")
+    with pytest.raises(ValueError, match="is not named for cp311-abi3-linux_x86_64"):
+        wheel_check.check_wheel(wheel, platforms.here().name, "linux_x86_64")
+
+
+def test_the_staged_manifest_names_its_wheels_and_keeps_the_rest(tmp_path):
+    wheels = {}
+    for name, tag in (("linux-x64", "manylinux_2_28_x86_64"), ("windows-x64", "win_amd64")):
+        wheels[name] = tmp_path / f"boucle_core-9.9.9-cp311-abi3-{tag}.whl"
+        wheels[name].write_bytes(b"")
+    package.stage(wheels, tmp_path / "staging")
     staged = tmp_path / "staging" / "blender_manifest.toml"
     staged = tomllib.loads(staged.read_text(encoding="utf-8"))
-    assert staged.pop("wheels") == [f"./wheels/{wheel.name}"]
-    assert staged.pop("platforms") == ["linux-x64"]
+    assert staged.pop("wheels") == [f"./wheels/{wheel.name}" for wheel in wheels.values()]
+    assert staged.pop("platforms") == ["linux-x64", "windows-x64"]
     plain = (ROOT / "addon" / "blender_manifest.toml").read_text(encoding="utf-8")
     assert staged == tomllib.loads(plain)
-    assert (tmp_path / "staging" / "wheels" / wheel.name).exists()
+    assert all((tmp_path / "staging" / "wheels" / file.name).exists() for file in wheels.values())
+
+
+@pytest.mark.parametrize("program", ["debootstrap", "unshare"])
+def test_a_system_without_a_debian_folder_says_what_it_lacks(monkeypatch, program):
+    there = shutil.which
+    monkeypatch.setattr(
+        debian.shutil, "which", lambda name: None if name == program else there(name) or name
+    )
+    with pytest.raises(environment.Missing, match=rf"a Debian 13 folder needs.*{program}"):
+        debian.require()
+
+
+def test_a_command_in_the_folder_gets_only_the_environment_that_it_is_given(tmp_path):
+    words = debian.inside(["true"], shared=[tmp_path], root=Path("/folder"), LETTER="a b")
+    tail = words[words.index("--") + 1 :]
+    assert tail[:2] == ["env", "-i"]
+    assert "LETTER=a b" in tail
+    assert tail[-3:] == ["chroot", "/folder", "true"]
+    assert str(tmp_path) in words[: words.index("--")]
+
+
+def test_every_request_of_the_window_has_a_program():
+    crop = gui.commands({"do": "photo", "name": "live", "part": (1, 2, 30, 40)})[0]
+    assert crop[:3] == ["import", "-window", "root"]
+    assert "30x40+1+2" in crop
+    assert gui.commands({"do": "move", "to": (3, 4)}) == [["xdotool", "mousemove", 3, 4]]
+    with pytest.raises(ValueError, match="'sing'"):
+        gui.commands({"do": "sing"})
+
+
+def test_only_complaints_of_the_console_count():
+    assert gui.is_complaint("Traceback (most recent call last):")
+    assert gui.is_complaint("RuntimeError: Error: no cloth")
+    assert not gui.is_complaint("Info: Saved cloth.blend")
 
 
 @pytest.mark.parametrize("make", ALL_STEPS)

@@ -28,6 +28,7 @@ from . import (
     runtime,
     sampling,
     settings,
+    shape,
     simulation,
     slot,
     vertex_attributes,
@@ -117,8 +118,9 @@ class Bake:
         self._restrict(description)
         met = colliders.Colliders(cloths, scene, self._depsgraph_of(cloths[0]))
         pushing = Fields(cloths[0], scene)
-        meshes = [simulation.mesh(obj, self._rest(obj)) for obj in cloths]
-        make = simulation.maker(description, meshes, self.options.threads, met.arrays)
+        meshes = [simulation.mesh(obj, self._start(obj)) for obj in cloths]
+        rests = [shape.rest(obj, self._matrix(obj)) for obj in cloths]
+        make = simulation.maker(description, meshes, self.options.threads, met.arrays, rests)
         build = Step(start, make)
         records = self._records(cloths, scene, description)
         yield build
@@ -151,12 +153,14 @@ class Bake:
             described, lambda one, other: colliders.meet(by_name[one], by_name[other])
         )
 
-    def _rest(self, obj: bpy.types.Object) -> points.Points:
-        """The rest positions (m) in world space."""
+    def _start(self, obj: bpy.types.Object) -> points.Points:
+        """The positions (m, world space) from which a cloth starts."""
         depsgraph = self._depsgraph_of(obj)
         sampling.refuse_other_count(obj, depsgraph)
-        matrix = sampling.object_matrix(obj, depsgraph)
-        return points.transform(sampling.targets(obj, depsgraph), matrix, "d")
+        return points.transform(sampling.targets(obj, depsgraph), self._matrix(obj), "d")
+
+    def _matrix(self, obj: bpy.types.Object) -> points.Affine:
+        return sampling.object_matrix(obj, self._depsgraph_of(obj))
 
     def _restrict(self, description: dict[str, Any]) -> None:
         """Frames that are kept may end before or after the cloths' own range."""

@@ -13,7 +13,7 @@ from ..core import cache_paths, drift, pc2, report
 from ..core.cache_paths import CacheFiles
 from ..core.progress import size
 from ..core.refusal import Refusal, cannot_write
-from . import fields, registry, runtime, settings, slot
+from . import fields, registry, runtime, settings, shape, slot
 
 
 def absolute(obj: bpy.types.Object, path: str) -> str:
@@ -175,6 +175,7 @@ def _own_drift(
     if in_full:
         now = settings.record(obj, description, pushing)
     else:
+        description = shape.steady(obj, description)
         now = drift.record(description, len(obj.data.vertices), "", pushing)
     return drift.differences(then, now)
 

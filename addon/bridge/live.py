@@ -35,6 +35,7 @@ from . import (
     runtime,
     sampling,
     settings,
+    shape,
     simulation,
     vertex_attributes,
 )
@@ -176,7 +177,11 @@ def _build(
     to_object = sampling.inverse(obj, matrix)
     met = Colliders([obj], scene, depsgraph)
     world = points.transform(local, matrix, "d")
-    solver = simulation.maker(description, [simulation.mesh(obj, world)], colliders=met.arrays)()
+    rests = [shape.rest(obj, matrix)]
+    make = simulation.maker(
+        description, [simulation.mesh(obj, world)], colliders=met.arrays, rests=rests
+    )
+    solver = make()
     pushing = Fields(obj, scene)
     push(solver, pushing.sample(depsgraph))
     limit = memory_limit()
@@ -224,6 +229,7 @@ def _settings_digest(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
         description = settings.describe(obj, scene, with_groups=False)
     except Refusal:
         return ""
+    description = shape.steady(obj, description)
     return drift.whole_digest(drift.record(description, 0, "", fields.record(obj, scene)))
 
 

@@ -20,6 +20,7 @@ from . import (
     sampling,
     settings,
     setup_check,
+    shape,
     slot,
 )
 
@@ -64,7 +65,7 @@ def _errors(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
         points.transform(rest.positions(mesh), matrix, "d"),
         faces.starts,
         faces.corners,
-        mesh_arrays.edges(mesh),
+        shape.face_edges(mesh),
     ):
         yield problem._replace(sentence=f'"{obj.name}": {problem.sentence}')
     try:
@@ -111,6 +112,7 @@ def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem
                 "vertex is held and below it is free",
                 soft,
             )
+    yield from _loose_edges(obj)
     animated = [name for name in SAMPLED_ONCE if animation.moves(obj, f"boucle.{name}")]
     if animated:
         yield _warning(
@@ -125,6 +127,23 @@ def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem
     if changed:
         yield _warning(
             f'"{obj.name}": the bake is outdated, changed since: {", ".join(changed)}: bake again'
+        )
+
+
+def _loose_edges(obj: bpy.types.Object) -> Iterator[Problem]:
+    seams = shape.loose_edges(obj.data)
+    is_sewn = obj.boucle.use_sewing_springs
+    if seams and not is_sewn:
+        yield Problem(
+            Severity.WARNING,
+            f'"{obj.name}": {len(seams)} loose edges have no effect: switch on Sewing to draw their '
+            "ends together, or delete them",
+            sorted({vertex for seam in seams for vertex in seam}),
+        )
+    if is_sewn and not seams:
+        yield _warning(
+            f'"{obj.name}": Sewing is on, but the mesh has no loose edges: add edges without faces '
+            "between the vertices that are to meet"
         )
 
 

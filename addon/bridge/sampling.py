@@ -9,7 +9,7 @@ from ..core import points
 from ..core.bake import Pose
 from ..core.points import Affine, Points
 from ..core.refusal import Refusal
-from . import mesh_arrays, rest, slot
+from . import mesh_arrays, rest, shape, slot
 
 
 def is_evaluated(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bool:
@@ -69,9 +69,12 @@ def pose(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, with_pins: bool)
     """The pose of a cloth at the depsgraph's frame."""
     matrix = object_matrix(obj, depsgraph)
     to_object = inverse(obj, matrix)
-    if not with_pins:
-        return Pose(None, to_object)
-    return Pose(points.transform(targets(obj, depsgraph), matrix, "d"), to_object)
+    moves_rest = obj.boucle.use_dynamic_mesh
+    world = None
+    if with_pins or moves_rest:
+        world = points.transform(targets(obj, depsgraph), matrix, "d")
+    now = shape.at_frame(obj, obj.evaluated_get(depsgraph), world)
+    return Pose(world if with_pins else None, to_object, now)
 
 
 def refuse_other_count(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:

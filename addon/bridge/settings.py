@@ -10,7 +10,7 @@ import bpy
 from ..core import drift, scene_json
 from ..core.refusal import Refusal
 from ..core.scene_json import Groups, World
-from . import colliders, mesh_arrays
+from . import colliders, mesh_arrays, shape
 
 PIN_THRESHOLD = 0.5
 """Soft pins are not supported yet: from this weight on a vertex is held, below it is free."""
@@ -46,7 +46,7 @@ def world(scene: bpy.types.Scene) -> World:
 
 
 def groups(obj: bpy.types.Object) -> Groups:
-    """The pinned vertices, those in the wind and those that do not collide.
+    """The pinned vertices, those in the wind, those that do not collide, and what shapes the cloth.
 
     Raises:
         Refusal: A group is named that the object does not have.
@@ -61,7 +61,7 @@ def groups(obj: bpy.types.Object) -> Groups:
     if settings.object_collision:
         name = settings.collision_group
         not_objects = _vertices(obj, "Object Collision Vertex Group", name, ANY)
-    return Groups(pins or [], wind, not_self or [], not_objects or [])
+    return Groups(pins or [], wind, not_self or [], not_objects or [], shape.groups(obj))
 
 
 def describe(
@@ -86,6 +86,7 @@ def record(
     """What a bake with this description and these force fields remembers of its cloth."""
     mesh = obj.data
     topology = mesh_arrays.topology(mesh).digest()
+    description = shape.steady(obj, description)
     return drift.record(description, len(mesh.vertices), topology, fields)
 
 

@@ -19,6 +19,7 @@ from .fields import Forces
 from .points import Affine, Points
 from .quantity import Numbers
 from .settle import Settle
+from .shape import Shape
 from .store import Sample, Stores
 
 
@@ -44,16 +45,18 @@ class Simulation(Protocol):
 
 
 class Pose(NamedTuple):
-    """What the scene says of a cloth at a frame: where its pins go (m, world space) and world to object space."""
+    """What the scene says of a cloth at a frame: where its pins go (m, world space), world to object space, the shape."""
 
     targets: Points | None
     """For all vertices; None without pins."""
     to_object: Affine
+    shape: Shape = Shape()
 
     def aim(self, simulation: Simulation, cloth: int) -> None:
-        """Tell a simulation where the pins of a cloth go in the next frame."""
+        """Tell a simulation where the pins of a cloth go in the next frame, and what its shape is to be."""
         if self.targets is not None:
             simulation.set_pin_targets(cloth, self.targets)
+        self.shape.aim(simulation, cloth)
 
 
 class Moment(NamedTuple):

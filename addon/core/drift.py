@@ -21,12 +21,21 @@ _WORDS = {
     "enabled": "collisions",
     "thickness": "collision thickness",
     "friction": "collision friction",
+    "shrink": "shrinking",
+    "min": "shrinking factor",
+    "max": "max shrinking",
+    "uniform": "pressure",
+    "factor": "pressure scale",
+    "force_max": "max sewing force",
 }
 
 _VERTICES = {
     "pins.vertices": "pinned vertices",
     "vertices": "vertices in the wind",
     "excluded_from_self": "vertices left out of self collision",
+    "shrink.weights": "weights of the shrink group",
+    "pressure.weights": "weights of the pressure group",
+    "sewing.seams": "loose edges",
     "excluded_from_colliders": "vertices left out of collision with objects",
 }
 """Lists of vertices by the end of their key."""

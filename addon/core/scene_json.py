@@ -6,8 +6,10 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from . import shape
 from .refusal import Refusal
 from .settle import Settling
+from .shape import ShapeGroups, decimal
 
 IMPLICIT = frozenset({"bdf2", "implicit_euler"})
 """Integrators that are stable at any step."""
@@ -33,6 +35,7 @@ class Groups(NamedTuple):
     wind: Sequence[int] | None
     excluded_from_self: Sequence[int] = ()
     excluded_from_colliders: Sequence[int] = ()
+    shape: ShapeGroups = ShapeGroups()
 
 
 class CollisionObject(NamedTuple):
@@ -43,11 +46,6 @@ class CollisionObject(NamedTuple):
     """What is kept free around it (m), beside the cloth's own thickness."""
     cloth_friction: float
     """A hundred times the coefficient of friction, 0 to 80."""
-
-
-def decimal(value: float) -> float:
-    """A float32 property as the decimal that the user typed: 0.1, not 0.10000000149011612."""
-    return float(f"{value:.7g}")
 
 
 def describe(
@@ -107,6 +105,7 @@ def _cloth(name: str, values: Values, groups: Groups, meets: bool) -> dict[str, 
         cloth["mass_per_vertex"] = decimal(values["mass_per_vertex"])
     if groups.pins:
         cloth["pins"] = {"vertices": list(groups.pins)}
+    cloth.update(shape.describe(values, groups.shape))
     cloth["collision"] = collision(values, groups, meets)
     return cloth
 

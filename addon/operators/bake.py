@@ -21,8 +21,8 @@ from .polling import can_simulate, cloths_of, is_free
 
 _TICK = 0.02
 """Seconds between two looks at the worker."""
-_PATIENCE = 0.05
-"""Seconds that one look may take: short frames are baked several at a look."""
+_PATIENCE = 0.03
+"""Seconds that one look may take, in which the window cannot answer: short frames are baked several at a look."""
 
 
 class _Baking:

@@ -14,6 +14,7 @@ from . import (
     shape,
     solver,
     springs,
+    tailoring,
     takes,
 )
 
@@ -35,6 +36,7 @@ _OTHERS = (
     presets,
     problems,
     result,
+    tailoring,
     takes,
 )
 

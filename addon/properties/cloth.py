@@ -12,7 +12,10 @@ from .field_weights import BOUCLE_PG_field_weights, FieldWeightProperties
 from .forces import ForceProperties
 from .overlay import OverlayProperties
 from .presets import PresetProperties
+from .pressure import PressureProperties
 from .problems import ProblemProperties
+from .rest import RestProperties
+from .sewing import SewingProperties
 from .shape import ShapeProperties
 from .solver import SolverProperties
 from .springs import SpringProperties
@@ -22,6 +25,9 @@ from .takes import BOUCLE_PG_take, TakeProperties
 class BOUCLE_PG_cloth(
     SpringProperties,
     ShapeProperties,
+    RestProperties,
+    PressureProperties,
+    SewingProperties,
     CollisionProperties,
     ForceProperties,
     FieldWeightProperties,

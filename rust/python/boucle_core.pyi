@@ -49,19 +49,22 @@ class Simulation:
         meshes: Sequence[tuple[Buffer, Buffer, Buffer]],
         threads: int = 0,
         colliders: Sequence[tuple[Buffer, Buffer, Buffer]] = (),
+        rests: Sequence[Buffer | None] = (),
     ) -> Simulation:
         """Build a simulation at the scene's first frame, at rest but for the scene's `velocity`.
 
         The scene's `transform`, pin `motion` and `release`, and the `motion` of its colliders hold.
 
         Args:
-            scene: The scene file's keys as a JSON object, but `grid` and `mesh` of each cloth stand in `meshes`, and `mesh`
-                and `cache` of a collider in `colliders` and `set_collider_targets`.
-            meshes: For each cloth, in the scene's order: rest positions (m), float32 or float64 (n, 3), world space;
-                the first corner of each face, int32 (f,) or (f + 1,); the vertex of each corner, int32 (c,).
+            scene: The scene file's keys as a JSON object, but `grid` and `mesh` of each cloth stand in `meshes`, `rest` in
+                `rests`, and `mesh` and `cache` of a collider in `colliders` and `set_collider_targets`.
+            meshes: For each cloth, in the scene's order: positions (m) that it starts from, float32 or float64 (n, 3), world
+                space; the first corner of each face, int32 (f,) or (f + 1,); the vertex of each corner, int32 (c,).
             threads: 0 takes every core.
             colliders: The same arrays for each collider of the scene that has no `sphere`, `plane`, `box` or `capsule`, in the
                 scene's order: where it stands at the first frame.
+            rests: For each cloth its rest positions (m), float32 or float64 (n, 3), or None where they are those that it starts
+                from.
 
         Raises:
             SceneError: A key, a value or a mesh is not accepted.
@@ -99,6 +102,30 @@ class Simulation:
             cloth: Its number.
             targets: Positions (m), float32 or float64 (n, 3), for *all* vertices of the cloth, of which only the pinned
                 are read. Where the scene moves the pins of this cloth itself (`motion`), the scene's targets hold.
+        """
+
+    def set_rest(
+        self, cloth: int, shape: Buffer | None = None, shrink: tuple[float, float] | None = None
+    ) -> None:
+        """Say what rest lengths are to be at the end of the next frame; they change evenly over it.
+
+        Args:
+            cloth: Its number.
+            shape: A rest shape (m), float32 or float64 (n, 3), whose lengths hold; None for the cloth's own.
+            shrink: By which fraction they are less at vertices of weight 0 and of weight 1 in the scene's `shrink`; None for
+                that of the first frame. Where the scene has keyframes, these hold.
+        """
+
+    def set_pressure(
+        self, cloth: int, uniform: float, factor: float = 0.0, target_volume: float | None = None
+    ) -> None:
+        """Say what the pressure of a cloth whose scene has `pressure` is to be at the end of the next frame.
+
+        Args:
+            cloth: Its number.
+            uniform: The part that does not depend on the volume (N/m²).
+            factor: How much pressure (N/m²) twice the density of the filling adds.
+            target_volume: The volume (m³) at which it balances; None for that at rest, 0 for none.
         """
 
     def set_collider_targets(self, collider: int, targets: Buffer) -> None:
@@ -180,8 +207,8 @@ class Simulation:
     def read_springs(self, cloth: int) -> tuple[bytes, bytes, bytes, bytes, bytes]:
         """Return the springs as native-endian bytes, in this order.
 
-        Ends int32 (s, 2); kind uint8 (s,) 0 stretch 1 shear 2 bend; rest length float64 (s,) (m); stiffness float64 (s,)
-        (N/m), as the limiter has it now; damping float64 (s,) (N·s/m).
+        Ends int32 (s, 2); kind uint8 (s,) 0 stretch 1 shear 2 bend 3 sewing; rest length float64 (s,) (m); stiffness float64
+        (s,) (N/m), as the limiter has it now; damping float64 (s,) (N·s/m).
         """
 
     def checkpoint(self) -> bytes:

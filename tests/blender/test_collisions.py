@@ -159,7 +159,7 @@ def stop_on_a_moving_collider():
     bpy.context.view_layer.objects.active = sheet
 
     def baked():
-        with open(bake.store.files.pc2, "rb") as file:
+        with open(bake.stores.each[0].files.pc2, "rb") as file:
             return file.read()
 
     part = len(baked())

@@ -38,7 +38,7 @@ def surface(graph: Graph, place: Place) -> Surface:
         is_over = loops.height.above(height)
         own = own + (loops.own - own) * is_over
         height = height.at_least(loops.height)
-    fuzz = graph.noise(graph.vector(u * 11.0, v * 11.0), 4.0)
+    fuzz = graph.noise(graph.vector(u * 11.0, v * 11.0), 2.0)
     height = height.at_least(0.22) + fuzz * 0.16
     depth = (height * 1.1).smooth() * 0.8 + 0.2
     color = graph.mixed(own, place.color, place.second)

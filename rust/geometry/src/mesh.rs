@@ -68,6 +68,8 @@ pub struct Mesh {
     /// Where each face begins in `corners`, and the end of the last: `face_count + 1` numbers.
     face_starts: Vec<u32>,
     corners: Vec<u32>,
+    /// Pairs of vertices that no face joins, smaller first, sorted.
+    loose_edges: Vec<[u32; 2]>,
 }
 
 impl Mesh {
@@ -85,7 +87,7 @@ impl Mesh {
         if !ends_fit || face_starts.windows(2).any(|pair| pair[0] > pair[1]) {
             return Err(MeshError::BrokenFaceStarts);
         }
-        let mesh = Self { vertex_count, face_starts, corners };
+        let mesh = Self { vertex_count, face_starts, corners, loose_edges: Vec::new() };
         for (face, corners) in mesh.faces().enumerate() {
             check_face(face, corners, vertex_count)?;
         }
@@ -107,6 +109,26 @@ impl Mesh {
             face_starts.push(corners.len() as u32);
         }
         Self::new(vertex_count, face_starts, corners)
+    }
+
+    /// The same mesh with those of these pairs of vertices as loose edges that are no edges of its faces; each once.
+    #[must_use]
+    pub fn with_loose_edges(self, pairs: impl IntoIterator<Item = [u32; 2]>) -> Self {
+        let pairs = pairs.into_iter().filter(|[a, b]| a != b);
+        let mut loose_edges: Vec<[u32; 2]> = pairs.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        if !loose_edges.is_empty() {
+            let edges = self.edges();
+            loose_edges.sort_unstable();
+            loose_edges.dedup();
+            loose_edges.retain(|pair| edges.binary_search(pair).is_err());
+        }
+        Self { loose_edges, ..self }
+    }
+
+    /// The edges that no face has, smaller vertex first, sorted.
+    #[must_use]
+    pub fn loose_edges(&self) -> &[[u32; 2]] {
+        &self.loose_edges
     }
 
     /// How many vertices there are, used or not.
@@ -211,6 +233,12 @@ mod tests {
     fn vertices_without_a_face_are_loose() {
         assert_eq!(quad_and_triangle().loose_vertices(), [5]);
         assert_eq!(quad_and_triangle().triangle_count(), 3);
+    }
+
+    #[test]
+    fn an_edge_is_loose_that_no_face_has() {
+        let mesh = quad_and_triangle().with_loose_edges([[3, 4], [2, 1], [4, 3], [5, 5], [0, 2]]);
+        assert_eq!(mesh.loose_edges(), [[0, 2], [3, 4]]);
     }
 
     #[test]

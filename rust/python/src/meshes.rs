@@ -15,20 +15,35 @@ pub(crate) fn of_cloths(
     py: Python<'_>,
     scene: &Scene,
     meshes: &[MeshArrays<'_>],
+    rests: &[Option<Bound<'_, PyAny>>],
 ) -> PyResult<Vec<RestMesh>> {
     if meshes.len() != scene.cloth.len() {
         let (given, wanted) = (meshes.len(), scene.cloth.len());
         return Err(refuse(py, format!("meshes holds {given}; accepted: {wanted}, one a cloth")));
     }
+    if rests.len() > meshes.len() {
+        let (given, wanted) = (rests.len(), meshes.len());
+        return Err(refuse(py, format!("rests holds {given}; accepted: {wanted}, one a cloth")));
+    }
     let mut rest_meshes = Vec::with_capacity(meshes.len());
-    for (cloth, arrays) in scene.cloth.iter().zip(meshes) {
-        if cloth.grid.is_some() || cloth.mesh.is_some() {
-            let message = "grid or mesh; accepted: neither, as the mesh is given beside the scene";
+    for (number, (cloth, arrays)) in scene.cloth.iter().zip(meshes).enumerate() {
+        if cloth.grid.is_some() || cloth.mesh.is_some() || cloth.rest.is_some() {
+            let message =
+                "grid, mesh or rest; accepted: none, as the mesh is given beside the scene";
             return Err(refuse(py, format!("cloth.{}: {message}", cloth.name)));
         }
         let (mesh, mut positions) = mesh(py, &format!("cloth \"{}\"", cloth.name), arrays)?;
         cloth.transform.place(&mut positions);
-        rest_meshes.push(RestMesh { mesh, positions, grid: None });
+        let rest = match rests.get(number) {
+            Some(Some(shape)) => {
+                let what = format!("rest positions of cloth \"{}\"", cloth.name);
+                let mut shape = buffers::positions(shape, &what, Some(positions.len()))?;
+                cloth.transform.place(&mut shape);
+                Some(shape)
+            }
+            _ => None,
+        };
+        rest_meshes.push(RestMesh { mesh, positions, rest, grid: None });
     }
     Ok(rest_meshes)
 }

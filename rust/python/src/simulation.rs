@@ -36,17 +36,18 @@ impl Simulation {
         clippy::needless_pass_by_value,
         reason = "Python's sequences are taken apart into them"
     )]
-    #[pyo3(signature = (scene, meshes, threads = 0, colliders = Vec::new()))]
+    #[pyo3(signature = (scene, meshes, threads = 0, colliders = Vec::new(), rests = Vec::new()))]
     fn new(
         py: Python<'_>,
         scene: &str,
         meshes: Vec<MeshArrays<'_>>,
         threads: i64,
         colliders: Vec<MeshArrays<'_>>,
+        rests: Vec<Option<Bound<'_, PyAny>>>,
     ) -> PyResult<Self> {
         let scene = compute(py, || Scene::from_json(scene))?;
         let threads = thread_count(py, threads)?;
-        let rest_meshes = meshes::of_cloths(py, &scene, &meshes)?;
+        let rest_meshes = meshes::of_cloths(py, &scene, &meshes, &rests)?;
         let colliders = meshes::of_colliders(py, &scene, &colliders)?;
         let assembly = compute(py, || Assembly::new(&scene, rest_meshes, colliders, threads))?;
         Ok(Self { assembly: Some(assembly) })
@@ -124,6 +125,36 @@ impl Simulation {
         self.with(py, |assembly| {
             assembly.simulation.set_pin_targets(index, &targets);
             Ok(())
+        })
+    }
+
+    #[pyo3(signature = (cloth, shape = None, shrink = None))]
+    fn set_rest(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        shape: Option<&Bound<'_, PyAny>>,
+        shrink: Option<[f64; 2]>,
+    ) -> PyResult<()> {
+        let (index, given) = self.cloth(py, cloth)?;
+        let count = given.positions.len();
+        let read = |shape| buffers::positions(shape, "shape", Some(count));
+        let shape = shape.map(read).transpose()?;
+        self.with(py, |assembly| assembly.set_rest(index, shape.as_deref(), shrink))
+    }
+
+    #[pyo3(signature = (cloth, uniform, factor = 0.0, target_volume = None))]
+    fn set_pressure(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        uniform: f64,
+        factor: f64,
+        target_volume: Option<f64>,
+    ) -> PyResult<()> {
+        let index = self.cloth(py, cloth)?.0;
+        self.with(py, |assembly| {
+            Ok(assembly.simulation.set_pressure(index, uniform, factor, target_volume)?)
         })
     }
 

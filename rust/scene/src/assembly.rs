@@ -1,21 +1,24 @@
 //! From a scene and rest meshes to a simulation whose pins and colliders follow the scene.
 
 use boucle_geometry::{Mesh, Vector};
-use boucle_solver::{Certificate, Cloth, Settings, Simulation};
+use boucle_solver::{Certificate, Cloth, Settings, Simulation, Tailoring};
 
 use crate::collider::{ColliderTrack, RestCollider};
 use crate::description::{Choice, ClothDescription, Grid, Scene};
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::pins::PinTrack;
+use crate::shape::ShapeTrack;
 
 /// The rest shape of a cloth.
 #[derive(Clone, Debug)]
 pub struct RestMesh {
     /// Its faces.
     pub mesh: Mesh,
-    /// Its rest positions (m), in world space.
+    /// The positions (m) that it starts from, in world space.
     pub positions: Vec<Vector>,
+    /// Its rest positions (m), if they are others.
+    pub rest: Option<Vec<Vector>>,
     /// The grid it was made from, by which pins may be named.
     pub grid: Option<Grid>,
 }
@@ -25,6 +28,7 @@ pub struct Assembly {
     /// The cloths in motion.
     pub simulation: Simulation,
     tracks: Vec<PinTrack>,
+    shape_tracks: Vec<ShapeTrack>,
     collider_tracks: Vec<ColliderTrack>,
     first_frame: i32,
 }
@@ -51,11 +55,16 @@ impl Assembly {
         }
         let mut tracks = Vec::with_capacity(meshes.len());
         let mut cloths = Vec::with_capacity(meshes.len());
+        let mut shape_tracks = Vec::with_capacity(meshes.len());
         for (description, rest) in scene.cloth.iter().zip(meshes) {
             let at = format!("cloth.{}", description.name);
             let track = PinTrack::new(&description.pins, &format!("{at}.pins"), &rest)?;
-            cloths.push(cloth(scene, description, rest, track.vertices(), &at)?);
+            let shape = ShapeTrack::new(description, rest.positions.len(), &at)?;
+            let made = cloth(scene, description, rest, track.vertices(), &at)?;
+            let shrink = shape.shrink(scene.scene.frames[0]);
+            cloths.push(Cloth { tailoring: Tailoring { shrink, ..made.tailoring }, ..made });
             tracks.push(track);
+            shape_tracks.push(shape);
         }
         let first_frame = scene.scene.frames[0];
         let (colliders, collider_tracks) = scene
@@ -82,7 +91,7 @@ impl Assembly {
                 simulation.set_velocities(index, &vec![velocity; count]);
             }
         }
-        Ok(Self { simulation, tracks, collider_tracks, first_frame })
+        Ok(Self { simulation, tracks, shape_tracks, collider_tracks, first_frame })
     }
 
     /// Moves on by one frame, pins and colliders included.
@@ -94,11 +103,35 @@ impl Assembly {
         for (cloth, track) in self.tracks.iter().enumerate() {
             track.prepare(&mut self.simulation, cloth, frame, self.first_frame);
         }
-        let outcome = self.aim_colliders(frame).and_then(|()| self.simulation.advance());
+        let ready = self.shape(frame).and_then(|()| self.aim_colliders(frame));
+        let outcome = ready.and_then(|()| self.simulation.advance());
         outcome.map_err(|error| match solver(error) {
             Error::Input(reason) => Error::Unstable { frame: frame + 1, reason },
             other => other,
         })
+    }
+
+    /// Sets the rest shape (m, world space) of a cloth at the end of the next frame, its own if `None`, with its shrink at
+    /// vertices of weight 0 and 1, that of its first frame if `None`. Keyframes of the scene come before it.
+    ///
+    /// # Errors
+    /// [`Error::Input`] when the shape is not of the cloth's vertices, or the shrink is out of its domain.
+    pub fn set_rest(
+        &mut self,
+        cloth: usize,
+        shape: Option<&[Vector]>,
+        shrink: Option<[f64; 2]>,
+    ) -> Result<()> {
+        let Self { simulation, shape_tracks, .. } = self;
+        Ok(shape_tracks[cloth].set_rest(simulation, cloth, shape, shrink)?)
+    }
+
+    /// Sets what keyframes change of the cloths' shape on the way from `frame`.
+    fn shape(&mut self, frame: i32) -> boucle_solver::Result<()> {
+        for (cloth, track) in self.shape_tracks.iter().enumerate() {
+            track.prepare(&mut self.simulation, cloth, frame + 1)?;
+        }
+        Ok(())
     }
 
     /// Sets where the colliders that the scene moves are to be after `frame`.
@@ -153,13 +186,27 @@ fn cloth(
         &format!("{at}.collision"),
     )?;
     let (mass, material) = (description.mass(), description.springs.material());
-    let made =
-        Cloth::from_mesh(&description.name, rest.mesh, rest.positions, &mass, material, pins);
+    let loose_edges = rest.mesh.loose_edges().to_vec();
+    let (shape, start) = match rest.rest {
+        Some(shape) => (shape, Some(rest.positions)),
+        None => (rest.positions, None),
+    };
+    let made = Cloth::from_mesh(&description.name, rest.mesh, shape, &mass, material, pins)
+        .and_then(|cloth| match start {
+            Some(start) => cloth.starting_at(start),
+            None => Ok(cloth),
+        })
+        .and_then(|cloth| match &description.sewing {
+            Some(sewing) => cloth.sewn(sewing.sewing(&loose_edges)),
+            None => Ok(cloth),
+        });
     let cloth = made.map_err(|error| match error {
         boucle_solver::Error::OutOfDomain { .. } => Error::input(format!("{at}.{error}")),
         other => Error::from(other),
     })?;
-    Ok(Cloth { collision, ..cloth })
+    let pressure = description.pressure.as_ref();
+    let pressure = pressure.map(|pressure| pressure.pressure(scene.scene.frames[0]));
+    Ok(Cloth { collision, pressure, ..cloth })
 }
 
 /// The solver's refusals of a step, told with the table they come from.

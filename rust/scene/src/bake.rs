@@ -241,7 +241,7 @@ fn digest(
     hash.update(&serde_json::to_vec(scene).unwrap_or_default());
     for rest in meshes {
         hash.update(&(rest.positions.len() as u64).to_le_bytes());
-        for position in &rest.positions {
+        for position in rest.positions.iter().chain(rest.rest.iter().flatten()) {
             position.iter().for_each(|number| hash.update(&number.to_le_bytes()));
         }
         for face in rest.mesh.faces() {
@@ -250,6 +250,9 @@ fn digest(
                 hash.update(&vertex.to_le_bytes());
             }
         }
+    }
+    for pair in meshes.iter().flat_map(|rest| rest.mesh.loose_edges()) {
+        pair.iter().for_each(|vertex| hash.update(&vertex.to_le_bytes()));
     }
     for collider in colliders {
         collider.feed(&mut hash);

@@ -22,6 +22,7 @@ pub mod pc2;
 mod pins;
 pub mod report;
 mod samples;
+mod shape;
 pub mod source;
 pub mod transform;
 

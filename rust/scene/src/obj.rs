@@ -1,8 +1,8 @@
 //! Wavefront OBJ: rest meshes in and out.
 //!
 //! Of the format, vertices (`v x y z`, further numbers ignored) and faces (`f`, corners as `v`, `v/vt`, `v//vn`, `v/vt/vn`,
-//! counted from 1, or backwards from -1) are read; names, groups, materials, texture coordinates, normals, lines and points
-//! are passed over; anything else is refused with its line. The order of vertices is the file's.
+//! counted from 1, or backwards from -1) are read, and lines (`l`), of which those that are no side of a face are loose edges;
+//! names, groups, materials, texture coordinates, normals and points are passed over; anything else is refused with its line. The order of vertices is the file's.
 //!
 //! Our own reader, because no crate keeps n-gons and the vertex order and names the line that it refuses.
 
@@ -19,9 +19,8 @@ const MAX_LINE: u64 = 1 << 20;
 /// Most corners of all faces together.
 const MAX_CORNERS: usize = 8 * MAX_VERTICES;
 /// Statements that say nothing about the shape of the cloth.
-const PASSED_OVER: [&str; 14] = [
-    "vt", "vn", "vp", "g", "o", "s", "mg", "usemtl", "mtllib", "l", "p", "usemap", "maplib", "lod",
-];
+const PASSED_OVER: [&str; 13] =
+    ["vt", "vn", "vp", "g", "o", "s", "mg", "usemtl", "mtllib", "p", "usemap", "maplib", "lod"];
 
 /// Reads a mesh: its faces and its rest positions (m), Z up.
 ///
@@ -54,6 +53,9 @@ pub fn write(sink: &mut impl Write, mesh: &Mesh, positions: &[Vector]) -> std::i
             write!(sink, " {}", vertex + 1)?;
         }
         writeln!(sink)?;
+    }
+    for [a, b] in mesh.loose_edges() {
+        writeln!(sink, "l {} {}", a + 1, b + 1)?;
     }
     Ok(())
 }
@@ -112,6 +114,8 @@ struct Reader {
     corners: Vec<u32>,
     /// The line of each face.
     face_lines: Vec<u32>,
+    /// Both vertices of each part of a line, and the line of the file that it stands in.
+    loose_edges: Vec<([u32; 2], u32)>,
 }
 
 impl Reader {
@@ -122,6 +126,7 @@ impl Reader {
             None => Ok(()),
             Some("v") => self.vertex(words, number),
             Some("f") => self.face(words, number),
+            Some("l") => self.line(words, number),
             Some(word) if PASSED_OVER.contains(&word) => Ok(()),
             Some(word) => Err(format!(
                 "\"{}\" is no OBJ statement that is accepted (v, f, vt, vn, g, o, s, usemtl, mtllib)",
@@ -181,6 +186,24 @@ impl Reader {
         Ok(())
     }
 
+    fn line<'a>(
+        &mut self,
+        words: impl Iterator<Item = &'a str>,
+        number: usize,
+    ) -> std::result::Result<(), String> {
+        let vertices: Vec<u32> =
+            words.map(|word| self.corner(word)).collect::<std::result::Result<_, _>>()?;
+        if vertices.len() < 2 {
+            return Err(format!("a line with {} vertices; accepted: 2 or more", vertices.len()));
+        }
+        if self.loose_edges.len() + vertices.len() > MAX_CORNERS {
+            return Err(format!("more than {MAX_CORNERS} line ends; accepted: at most so many"));
+        }
+        let pairs = vertices.windows(2).map(|pair| ([pair[0], pair[1]], number as u32));
+        self.loose_edges.extend(pairs);
+        Ok(())
+    }
+
     /// The vertex, from 0, of a corner such as `7`, `-1`, `7/2`, `7//3` or `7/2/3`.
     fn corner(&self, word: &str) -> std::result::Result<u32, String> {
         let shown = shorten(word);
@@ -216,6 +239,15 @@ impl Reader {
         }
         let mesh = Mesh::new(self.positions.len(), self.face_starts, self.corners)
             .map_err(|error| bad_face(&error, &self.face_lines))?;
+        let count = self.positions.len();
+        let is_beyond = |pair: &[u32; 2]| pair[0].max(pair[1]) as usize >= count;
+        if let Some((pair, line)) = self.loose_edges.iter().find(|(pair, _)| is_beyond(pair)) {
+            let vertex = pair[0].max(pair[1]) + 1;
+            return Err(Error::input(format!(
+                "line {line}: the line names vertex {vertex}; accepted: 1 to {count}"
+            )));
+        }
+        let mesh = mesh.with_loose_edges(self.loose_edges.iter().map(|(pair, _)| *pair));
         if let Some(&vertex) = mesh.loose_vertices().first() {
             let line = self.lines[vertex as usize];
             return Err(Error::input(format!(

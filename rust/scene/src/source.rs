@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
+use boucle_geometry::{Mesh, Vector};
+
 use crate::assembly::RestMesh;
 use crate::collider::RestCollider;
 use crate::description::{ClothDescription, ColliderDescription, Scene};
@@ -39,6 +41,7 @@ pub fn rest_meshes(scene: &Scene, folder: &Path) -> Result<Vec<RestMesh>> {
             limits::vertices("the cloths together", count)?;
         }
         cloth.transform.place(&mut rest.positions);
+        rest.rest = rest_shape(cloth, &rest.mesh, folder)?;
         meshes.push(rest);
     }
     Ok(meshes)
@@ -48,7 +51,8 @@ fn rest_mesh(cloth: &ClothDescription, folder: &Path) -> Result<RestMesh> {
     let at = format!("cloth.{}", cloth.name);
     if let Some(grid) = &cloth.grid {
         let mesh = grid.mesh().map_err(|error| Error::input(format!("{at}.grid: {error}")))?;
-        return Ok(RestMesh { mesh, positions: grid.positions(), grid: Some(grid.clone()) });
+        let (positions, grid) = (grid.positions(), Some(grid.clone()));
+        return Ok(RestMesh { mesh, positions, rest: None, grid });
     }
     let Some(name) = &cloth.mesh else {
         return Err(Error::input(format!("{at}.grid is missing; accepted: it or mesh")));
@@ -57,7 +61,29 @@ fn rest_mesh(cloth: &ClothDescription, folder: &Path) -> Result<RestMesh> {
     let file = open(&folder.join(name)).map_err(|error| error.within(&place))?;
     let (mesh, positions) =
         obj::read(BufReader::new(file), cloth.up).map_err(|error| error.within(&place))?;
-    Ok(RestMesh { mesh, positions, grid: None })
+    Ok(RestMesh { mesh, positions, rest: None, grid: None })
+}
+
+/// Reads the rest shape (m) of a cloth that starts from another: a mesh file with the same faces, put where the cloth is.
+fn rest_shape(cloth: &ClothDescription, mesh: &Mesh, folder: &Path) -> Result<Option<Vec<Vector>>> {
+    let Some(name) = &cloth.rest else { return Ok(None) };
+    let place = format!("cloth.{}.rest = \"{name}\"", cloth.name);
+    let file = open(&folder.join(name)).map_err(|error| error.within(&place))?;
+    let (other, mut positions) =
+        obj::read(BufReader::new(file), cloth.up).map_err(|error| error.within(&place))?;
+    let [one, two] = [mesh, &other].map(|mesh| (mesh.vertex_count(), mesh.face_count()));
+    if one != two {
+        let given = format!("it has {} vertices and {} faces", two.0, two.1);
+        let accepted = format!("{} and {}, as the cloth has", one.0, one.1);
+        return Err(Error::input(format!("{given}; accepted: {accepted}")).within(&place));
+    }
+    if let Some(face) = mesh.faces().zip(other.faces()).position(|(one, two)| one != two) {
+        let reason = format!("its face {face} (from 0) joins other vertices than the cloth's");
+        let accepted = "accepted: the same faces in the same order";
+        return Err(Error::input(format!("{reason}; {accepted}")).within(&place));
+    }
+    cloth.transform.place(&mut positions);
+    Ok(Some(positions))
 }
 
 /// Reads or makes the shape of every collider; mesh files and caches are looked for in `folder`, that of the scene file.

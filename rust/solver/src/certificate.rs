@@ -6,6 +6,7 @@ use xxhash_rust::xxh3::Xxh3;
 use crate::cloth::Placed;
 use crate::law::spring::Law;
 use crate::material::SpringKind;
+use crate::sewing::energy;
 use crate::state::State;
 
 /// The certificate of one frame.
@@ -106,7 +107,12 @@ fn energies<'a>(
             kinetic += 0.5 * mass * state.velocity.get(particle).norm_squared();
             potential -= mass * gravity.dot(&state.position.get(particle));
         }
+        let force_max = cloth.tailoring.sewing.as_ref().map_or(0.0, |sewing| sewing.force_max);
         for spring in &cloth.springs {
+            if spring.kind == SpringKind::Sewing {
+                potential += energy(spring.stiffness, force_max, length(state, spring.ends, base));
+                continue;
+            }
             let ratio = length(state, spring.ends, base) / spring.rest_length;
             potential += spring.stiffness * spring.rest_length.powi(2) * law.energy(ratio);
         }

@@ -4,6 +4,7 @@
 //! "BOUCLECK" | version u32 | digest u64 | frame i32 | substeps u32 | particles u64
 //! | positions and velocities, f64, axis by axis | pinned, a byte each
 //! | points of colliders u64 | their positions, f64, point by point
+//! | numbers of the shape u64 | those, f64: present rest lengths, pressures, welded seams
 //! | implicit integrators only: edges u64 | substeps u32 | step f64 | error f64
 //! |     positions and velocities before | tension f64 of each edge
 //! | XXH3-64 of all before
@@ -19,7 +20,7 @@ use crate::implicit::Memory;
 use crate::state::State;
 
 const MAGIC: &[u8; 8] = b"BOUCLECK";
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 const HEADER: usize = 36;
 
 /// What a checkpoint holds.
@@ -33,6 +34,8 @@ pub(crate) struct Checkpoint {
     pub(crate) is_pinned: Vec<bool>,
     /// Where the points of colliders are (m).
     pub(crate) colliders: Vec<Vector>,
+    /// Present rest lengths, pressures and welded seams, where there are any.
+    pub(crate) shape: Vec<f64>,
     pub(crate) memory: Option<Memory>,
 }
 
@@ -51,6 +54,8 @@ impl Checkpoint {
         bytes.extend_from_slice(&(self.colliders.len() as u64).to_le_bytes());
         let numbers = self.colliders.iter().flatten();
         bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
+        bytes.extend_from_slice(&(self.shape.len() as u64).to_le_bytes());
+        bytes.extend(self.shape.iter().flat_map(|number| number.to_le_bytes()));
         if let Some(memory) = &self.memory {
             bytes.extend_from_slice(&(memory.tensions.len() as u64).to_le_bytes());
             bytes.extend_from_slice(&memory.substeps.to_le_bytes());
@@ -75,7 +80,7 @@ impl Checkpoint {
             return Err(damaged());
         }
         if reader.take().map(u32::from_le_bytes) != Some(VERSION) {
-            return Err(Error::BadCheckpoint("is of another version; accepted: version 3"));
+            return Err(Error::BadCheckpoint("is of another version; accepted: version 4"));
         }
         Self::read_body(&mut reader).ok_or_else(damaged)
     }
@@ -93,6 +98,7 @@ impl Checkpoint {
         reader.0 = rest;
         let is_pinned = pins.iter().map(|&byte| byte != 0).collect();
         let colliders = reader.vectors()?;
+        let shape = reader.numbers()?;
         let memory =
             if reader.0.is_empty() { None } else { Some(Self::read_memory(reader, count)?) };
         reader.0.is_empty().then_some(Self {
@@ -102,6 +108,7 @@ impl Checkpoint {
             state,
             is_pinned,
             colliders,
+            shape,
             memory,
         })
     }
@@ -153,6 +160,14 @@ impl Reader<'_> {
             .collect()
     }
 
+    fn numbers(&mut self) -> Option<Vec<f64>> {
+        let count = self.count()?;
+        if self.0.len() < count.checked_mul(8)? {
+            return None;
+        }
+        (0..count).map(|_| self.number()).collect()
+    }
+
     fn state(&mut self, count: usize) -> Option<State> {
         let mut state = State::zeros(count);
         for axis in state.position.0.iter_mut().chain(&mut state.velocity.0) {
@@ -174,7 +189,8 @@ mod tests {
         (memory.tensions[1], memory.step, memory.substeps) = (2.5, 0.01, 4);
         let is_pinned = vec![true, false];
         let (colliders, memory) = (vec![Vector::new(1.5, -2.0, 1e-9)], Some(memory));
-        Checkpoint { digest: 7, frame: -3, substeps: 9, state, is_pinned, colliders, memory }
+        let shape = vec![1.0, 0.25];
+        Checkpoint { digest: 7, frame: -3, substeps: 9, state, is_pinned, colliders, shape, memory }
     }
 
     #[test]

@@ -4,8 +4,10 @@ use boucle_geometry::{Mesh, Vector};
 
 use crate::collision::Collision;
 use crate::error::{Error, Result, bad_mesh};
+use crate::force::Pressure;
 use crate::law::{Spring, springs_of_mesh};
 use crate::material::SpringMaterial;
+use crate::tailoring::Tailoring;
 
 /// Farthest coordinate (m) accepted: beyond it differences lose the precision that springs need.
 pub(crate) const FARTHEST: f64 = 1e6;
@@ -28,7 +30,7 @@ pub struct Cloth {
     pub name: String,
     /// Its faces; none for a bare network of springs.
     pub mesh: Mesh,
-    /// Rest positions (m), world space.
+    /// Positions (m) that it starts from, world space: its rest shape, if `tailoring` has no other.
     pub positions: Vec<Vector>,
     /// Its springs; at most one joins two particles.
     pub springs: Vec<Spring>,
@@ -40,6 +42,10 @@ pub struct Cloth {
     pub material: SpringMaterial,
     /// How it collides; not at all if `None`.
     pub collision: Option<Collision>,
+    /// A rest shape of its own, shrink, seams.
+    pub tailoring: Tailoring,
+    /// What it is inflated by.
+    pub pressure: Option<Pressure>,
 }
 
 /// A cloth and the number of its first particle.
@@ -80,8 +86,18 @@ impl Cloth {
         }
         let masses = masses_of(name, &mesh, &positions, mass)?;
         let springs = springs_of_mesh(&mesh, &positions, &material);
-        let (name, collision) = (name.to_owned(), None);
-        let cloth = Self { name, mesh, positions, springs, masses, pins, material, collision };
+        let cloth = Self {
+            name: name.to_owned(),
+            mesh,
+            positions,
+            springs,
+            masses,
+            pins,
+            material,
+            collision: None,
+            tailoring: Tailoring::default(),
+            pressure: None,
+        };
         cloth.check()?;
         Ok(cloth)
     }
@@ -94,6 +110,10 @@ impl Cloth {
         self.material.check()?;
         check_positions(&self.name, &self.positions)?;
         self.check_springs()?;
+        self.check_tailoring()?;
+        if let Some(pressure) = &self.pressure {
+            pressure.check(&self.name, self.positions.len())?;
+        }
         let count = self.positions.len();
         if self.masses.len() != count {
             let given = self.masses.len();
@@ -145,7 +165,7 @@ impl Cloth {
     }
 }
 
-fn check_positions(name: &str, positions: &[Vector]) -> Result<()> {
+pub(crate) fn check_positions(name: &str, positions: &[Vector]) -> Result<()> {
     let refuse = |reason| Err(Error::BadCloth { cloth: name.to_owned(), reason });
     if positions.is_empty() {
         return refuse("it has no vertices; accepted: a mesh with at least one face".to_owned());

@@ -33,13 +33,16 @@ mod method;
 mod overstretch;
 mod perturbation;
 mod pins;
+mod rest;
 mod scatter;
 mod settings;
+mod sewing;
 mod simulation;
 mod stability;
 mod state;
 mod step;
 mod system;
+mod tailoring;
 
 pub use certificate::Certificate;
 pub use cloth::{Cloth, Mass, mesh_of};
@@ -48,10 +51,12 @@ pub use collision::Collision;
 pub use contact::Detection;
 pub use error::{Error, Result};
 pub use force::{
-    Falloff, FalloffShape, Field, FieldKind, FieldShape, Range, Region, Side, Wind, WindLaw,
+    Falloff, FalloffShape, Field, FieldKind, FieldShape, Pressure, Range, Region, Side, Wind,
+    WindLaw,
 };
 pub use law::{Spring, springs_of_mesh};
 pub use material::{DampingLaw, Limiter, SpringKind, SpringMaterial, StiffnessFrom};
 pub use overstretch::OverstretchedEdge;
 pub use settings::{IntegratorKind, LinearSolver, MOST_SUBSTEPS, Settings, StepSize};
 pub use simulation::{Interrupter, Simulation};
+pub use tailoring::{SHRINK, Sewing, Tailoring};

@@ -11,10 +11,12 @@ pub enum SpringKind {
     Shear,
     /// To the neighbour after next.
     Bend,
+    /// Between the ends of a seam, which are drawn together: no spring of the mesh.
+    Sewing,
 }
 
 impl SpringKind {
-    /// Every kind, in order.
+    /// Every kind that a mesh carries, in order.
     pub const ALL: [Self; 3] = [Self::Stretch, Self::Shear, Self::Bend];
 }
 

@@ -66,6 +66,20 @@ impl Method {
         implicit.into_iter().flat_map(|implicit| implicit.held_edges())
     }
 
+    /// Takes the present rest lengths of a cloth's springs; `base` is the number of its first particle.
+    pub(crate) fn follow_rest_lengths(&mut self, cloth: &Cloth, base: u32) {
+        if let Self::Implicit(implicit) = self {
+            implicit.follow_rest_lengths(cloth, base);
+        }
+    }
+
+    /// Takes the present stiffness of the cloths' springs.
+    pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth]) {
+        if let Self::Implicit(implicit) = self {
+            implicit.follow_stiffness(cloths);
+        }
+    }
+
     pub(crate) fn is_implicit(&self) -> bool {
         matches!(self, Self::Implicit(_))
     }

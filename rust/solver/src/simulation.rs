@@ -7,19 +7,21 @@ mod interrupt;
 mod placing;
 mod plan;
 mod saving;
+mod shape;
 mod tension;
 
 pub use interrupt::Interrupter;
 
 use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
 
 use boucle_geometry::Vector;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::awake::with_others_awake;
 use crate::certificate::{Certificate, length};
-use crate::cloth::{Cloth, FARTHEST, placed};
+use crate::cloth::{Cloth, placed};
 use crate::collider::Collider;
 use crate::contact::Contacts;
 use crate::digest::digest;
@@ -34,7 +36,9 @@ use crate::method::Method;
 use crate::overstretch::{OverstretchedEdge, overstretched};
 use crate::perturbation::perturb;
 use crate::pins::Pins;
+use crate::rest::Rest;
 use crate::settings::Settings;
+use crate::sewing::Seams;
 use crate::stability::Spectrum;
 use crate::state::State;
 use crate::step::Step;
@@ -53,6 +57,9 @@ pub struct Simulation {
     pins: Pins,
     contacts: Contacts,
     limits: Vec<Limit>,
+    /// Of the cloths whose rest lengths change.
+    rests: Vec<Option<Box<Rest>>>,
+    seams: Seams,
     state: State,
     /// The state at the start of a frame, to fall back on.
     good: State,
@@ -68,7 +75,7 @@ pub struct Simulation {
     clipped: u32,
     /// Of the present state, if anything can touch.
     intersections: Option<u64>,
-    threads: ThreadPool,
+    threads: Arc<ThreadPool>,
     interrupter: Interrupter,
 }
 
@@ -140,6 +147,8 @@ impl Simulation {
             spectrum: Spectrum::default(),
             contacts: Contacts::new(&cloths, &colliders),
             limits: Vec::new(),
+            rests: cloths.iter().map(|_| None).collect(),
+            seams: Seams::new(&cloths),
             good: state.clone(),
             good_memory: None,
             frame: settings.first_frame,
@@ -158,10 +167,11 @@ impl Simulation {
             settings,
             digest,
             state,
-            threads,
+            threads: Arc::new(threads),
             interrupter: Interrupter::default(),
         };
         simulation.follow_pins();
+        simulation.shrink_from_the_first()?;
         simulation.intersect();
         simulation.plan()?;
         Ok(simulation)
@@ -235,6 +245,7 @@ impl Simulation {
             return Err(self.diverged(first));
         }
         self.frame += 1;
+        self.end_shape();
         self.contacts.end_frame();
         self.clipped = self.contacts.take_clipped();
         self.intersect();
@@ -261,6 +272,7 @@ impl Simulation {
         self.method.take_iterations();
         self.contacts.take_clipped();
         self.state.copy_from(&self.good);
+        self.shape(0.0, true);
         if self.intersections.is_some_and(|count| count > 0) {
             self.intersect();
         }
@@ -279,21 +291,23 @@ impl Simulation {
         }
         self.pins.start(&mut self.state, duration);
         self.system.air.start_frame(self.frame, h, self.method.is_implicit());
-        let Self { system, pins, contacts, limits, state, method, threads, interrupter, .. } = self;
-        let stride =
-            plan::stride(method, contacts.longest_way(&state.velocity, duration), substeps);
+        let way = self.contacts.longest_way(&self.state.velocity, duration);
+        let stride = plan::stride(&self.method, way, substeps);
         // No pass has work for more.
-        let others = state.len() / CHUNK;
+        let others = self.state.len() / CHUNK;
+        let threads = Arc::clone(&self.threads);
         threads.install(|| {
             with_others_awake(others, || {
                 let outcome = (1..=substeps).find_map(|substep| {
-                    if interrupter.take() {
+                    if self.interrupter.take() {
                         return Some(Outcome::Interrupted);
                     }
+                    self.shape(f64::from(substep) / f64::from(substeps), false);
+                    let Self { system, pins, contacts, limits, state, method, .. } = &mut *self;
                     let step = Step { system, pins, h, number: substep, count: substeps, stride };
                     let is_short = step.run(state, method, contacts, limits);
                     let is_seen = watches || substep == substeps;
-                    let lost = if is_seen { first_lost(state) } else { None };
+                    let lost = if is_seen { state.first_lost() } else { None };
                     let too_long = (may_shorten && !is_short).then_some(Outcome::TooLong);
                     too_long.or(lost.map(Outcome::Lost))
                 });
@@ -377,20 +391,7 @@ impl Simulation {
         }
         self.method.follow_pins(&self.system);
         self.contacts.follow_pins(&self.system.inverse_masses);
-        let placed = self.cloths.iter().zip(&self.bases);
-        let inverse_masses = &self.system.inverse_masses;
-        self.limits =
-            placed.filter_map(|(cloth, &base)| Limit::of(cloth, base, inverse_masses)).collect();
+        self.limits = (0..self.cloths.len()).filter_map(|cloth| self.limit_of(cloth)).collect();
         self.spectrum = Spectrum::of(&self.cloths, &self.system);
     }
-}
-
-/// The first particle that left the finite numbers, or the space in which numbers are fine enough.
-fn first_lost(state: &State) -> Option<usize> {
-    let is_lost = |&particle: &usize| {
-        let position = state.position.get(particle);
-        position.iter().any(|x| !(x.abs() <= 1e3 * FARTHEST))
-            || state.velocity.get(particle).iter().any(|v| !v.is_finite())
-    };
-    (0..state.len()).find(is_lost)
 }

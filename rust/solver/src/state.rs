@@ -3,6 +3,7 @@
 use boucle_geometry::Vector;
 
 use crate::aligned::Aligned;
+use crate::cloth::FARTHEST;
 
 /// A vector for each particle, stored as three arrays so that neighbours load side by side.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,5 +67,14 @@ impl State {
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.position.copy_from(&other.position);
         self.velocity.copy_from(&other.velocity);
+    }
+    /// The first particle that left the finite numbers, or the space in which numbers are fine enough.
+    pub(crate) fn first_lost(&self) -> Option<usize> {
+        let is_lost = |&particle: &usize| {
+            let position = self.position.get(particle);
+            position.iter().any(|x| !(x.abs() <= 1e3 * FARTHEST))
+                || self.velocity.get(particle).iter().any(|v| !v.is_finite())
+        };
+        (0..self.len()).find(is_lost)
     }
 }

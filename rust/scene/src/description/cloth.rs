@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::choice::{Choice, FabricKeys, Later, NotYet};
 use super::collision::ClothCollision;
 use super::pins::Pins;
+use super::shape::{PressureDescription, SewingDescription, Shrink};
 use super::table;
 use crate::error::{Error, Result};
 use crate::limits;
@@ -29,7 +30,9 @@ pub struct ClothDescription {
     pub grid: Option<Grid>,
     /// The rest shape as an OBJ file, beside the scene file.
     pub mesh: Option<String>,
-    /// Which axis of the OBJ file points up.
+    /// An OBJ file with the same faces whose positions are the rest shape; the cloth starts from `grid` or `mesh`.
+    pub rest: Option<String>,
+    /// Which axis of the OBJ files points up.
     #[serde(default, deserialize_with = "Choice::read", serialize_with = "Choice::write")]
     pub up: UpAxis,
     /// Where the rest shape stands.
@@ -42,6 +45,15 @@ pub struct ClothDescription {
     /// Vertices that do not move of themselves.
     #[serde(default)]
     pub pins: Pins,
+    /// `[cloth.shrink]`.
+    #[serde(default, deserialize_with = "table::optional")]
+    pub shrink: Option<Shrink>,
+    /// `[cloth.pressure]`.
+    #[serde(default, deserialize_with = "table::optional")]
+    pub pressure: Option<PressureDescription>,
+    /// `[cloth.sewing]`.
+    #[serde(default, deserialize_with = "table::optional")]
+    pub sewing: Option<SewingDescription>,
     /// Velocity (m/s) of every vertex at the first frame, but for those that are pinned.
     #[serde(default)]
     pub velocity: [f64; 3],
@@ -80,7 +92,7 @@ impl ClothDescription {
         if let Some(grid) = &self.grid {
             grid.check(&format!("{at}.grid"))?;
         }
-        if self.up != UpAxis::Z && self.mesh.is_none() {
+        if self.up != UpAxis::Z && self.mesh.is_none() && self.rest.is_none() {
             return Err(Error::input(format!("{at}.up: accepted only with mesh")));
         }
         self.transform.check(&format!("{at}.transform"))?;
@@ -96,6 +108,15 @@ impl ClothDescription {
         }
         limits::vector(&format!("{at}.velocity"), &self.velocity, MAX_SPEED, " m/s")?;
         self.pins.check(&format!("{at}.pins"))?;
+        if let Some(shrink) = &self.shrink {
+            shrink.check(&format!("{at}.shrink"))?;
+        }
+        if let Some(pressure) = &self.pressure {
+            pressure.check(&format!("{at}.pressure"))?;
+        }
+        if let Some(sewing) = &self.sewing {
+            sewing.check(&format!("{at}.sewing"))?;
+        }
         let material = self.springs.material();
         material.check().map_err(|error| Error::input(format!("{at}.{error}")))
     }

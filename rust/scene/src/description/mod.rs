@@ -11,6 +11,7 @@ mod collision;
 mod field;
 mod force;
 mod pins;
+mod shape;
 mod solver;
 mod table;
 mod tree;
@@ -23,6 +24,7 @@ pub use collision::{ClothCollision, CollisionDescription};
 pub use field::FalloffDescription;
 pub use force::{FieldWord, Force, ForceKind, RegionDescription};
 pub use pins::{Keyframe, PinGroup, Pins};
+pub use shape::{PressureDescription, PressureKeyframe, SewingDescription, Shrink, ShrinkKeyframe};
 pub use solver::{SolverDescription, Substeps};
 pub(crate) use tree::joined;
 

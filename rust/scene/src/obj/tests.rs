@@ -27,6 +27,23 @@ fn every_form_of_a_corner_names_its_vertex() {
 }
 
 #[test]
+fn lines_that_are_no_side_of_a_face_are_loose_edges() {
+    let text = format!("l 1 3 2\n{SQUARE}f 1 2 3 4\nl -1 -2\nl 2 4\n");
+    let (mesh, positions) = read_text(&text).expect("a good file");
+    assert_eq!(mesh.loose_edges(), [[0, 2], [1, 3]]);
+    let mut written = Vec::new();
+    write(&mut written, &mesh, &positions).expect("there is room");
+    assert_eq!(read(&written[..], UpAxis::Z).expect("what we wrote").0, mesh);
+    for (line, expected) in [
+        ("l 1", "line 6: a line with 1 vertices; accepted: 2 or more"),
+        ("l 1 9", "line 6: the line names vertex 9; accepted: 1 to 4"),
+    ] {
+        let error = read_text(&format!("{SQUARE}f 1 2 3 4\n{line}\n")).expect_err(expected);
+        assert_eq!(error.to_string(), expected);
+    }
+}
+
+#[test]
 fn a_backslash_continues_a_line_and_windows_line_ends_are_taken() {
     let text = format!("{SQUARE}f 1 2 \\\n3 4\n").replace('\n', "\r\n");
     assert_eq!(read_text(&text).expect("a good file").0.face(0), [0, 1, 2, 3]);

@@ -16,6 +16,7 @@ use super::easing::Easing;
 use super::enclosure;
 use super::exclusion::Exclusion;
 use super::features::Features;
+use super::sewn::Sewn;
 
 /// How far points may stray, as a part of the mean edge: with more, all that lies near each other at rest is watched.
 const SLACK: f64 = 0.25;
@@ -59,6 +60,10 @@ pub(super) struct Bodies {
     pub(super) planes: Vec<Plane>,
     /// Particles at rest (m), and colliders' points at the first frame.
     pub(super) rest: Vec<Vector>,
+    /// By which factor edges at each point are to be shorter than at rest; empty while none are.
+    pub(super) scales: Vec<f64>,
+    /// Vertices that count as one.
+    sewn: Sewn,
     /// For pairs of a cloth that is thick for its edges.
     pub(super) easing: Option<Easing>,
     /// What does not collide with its own cloth, and with colliders.
@@ -82,6 +87,8 @@ impl Bodies {
             colliders: Features::default(),
             planes: Vec::new(),
             rest: Vec::new(),
+            scales: Vec::new(),
+            sewn: Sewn::new(cloths),
             easing: None,
             excluded: [(); 2].map(|()| Exclusion::new(particle_count)),
             meets: Vec::new(),
@@ -95,13 +102,14 @@ impl Bodies {
         for collider in colliders {
             bodies.add_collider(collider);
         }
+        bodies.all_touch &= bodies.sewn.is_empty();
         bodies.easing = Easing::of(&bodies);
         bodies
     }
 
     fn add_cloth(&mut self, cloth: &Cloth, base: u32, collider_count: usize) {
         let body = self.each.len() as u32;
-        self.rest.extend_from_slice(&cloth.positions);
+        self.rest.extend_from_slice(cloth.rest());
         self.body_of.resize(self.rest.len(), body);
         let nothing =
             Collision { with_self: false, colliders: Some(Vec::new()), ..Collision::default() };
@@ -208,10 +216,22 @@ impl Bodies {
         let [one, other] = [first[0], second[0]].map(|point| self.body_of[point as usize]);
         let (kind, meet) = match (other as usize).checked_sub(self.meets.len()) {
             Some(collider) => (1, self.meets[one as usize][collider]),
+            None if self.sewn.joins(first, second) => return false,
             None if one == other => (0, self.each[one as usize].with_self),
             None => return self.meets_cloths[one as usize][other as usize],
         };
         meet && self.excluded[kind].keeps(first) && self.excluded[kind].keeps(second)
+    }
+
+    /// How far apart (m) the features of a candidate of one cloth are at rest, as it is shrunk now.
+    #[inline]
+    pub(super) fn rest_distance(&self, candidate: &Candidate) -> f64 {
+        let rest = candidate.closest(|point| self.rest[point as usize]).offset.norm();
+        if self.scales.is_empty() {
+            return rest;
+        }
+        let scales = candidate.points.iter().map(|&point| self.scales[point as usize]);
+        rest * scales.fold(1.0, f64::min)
     }
 
     /// Whether a candidate speaks for the features that are closest, among those that may touch.

@@ -129,8 +129,7 @@ impl Near {
         let points = candidate.points;
         let owners = [points[0], points[3]].map(|point| bodies.body_of[point as usize]);
         let reach = if owners[0] == owners[1] {
-            let rest = candidate.closest(|point| bodies.rest[point as usize]).offset.norm();
-            thickness.min(OF_REST * rest)
+            thickness.min(OF_REST * bodies.rest_distance(candidate))
         } else {
             thickness.min(way_out(distance, thickness))
         };

@@ -29,6 +29,7 @@ mod recovery;
 mod response;
 mod search;
 mod settling;
+mod sewn;
 mod sieve;
 #[cfg(test)]
 mod tests;
@@ -113,6 +114,14 @@ impl Contacts {
     /// Takes over which particles are pinned.
     pub(crate) fn follow_pins(&mut self, inverse_masses: &[f64]) {
         self.paths.follow_pins(inverse_masses);
+    }
+
+    /// Takes over how far the edges at each vertex of a cloth are to shrink, whose first particle is `base`: what lies near each
+    /// other at rest may then lie nearer.
+    pub(crate) fn scale_rest(&mut self, base: u32, scales: &[f64]) {
+        let Bodies { scales: all, rest, .. } = &mut self.bodies;
+        all.resize(rest.len(), 1.0);
+        all[base as usize..base as usize + scales.len()].copy_from_slice(scales);
     }
 
     /// Whether nothing can touch anything.

@@ -15,6 +15,7 @@
 use boucle_geometry::{Aabb, Vector};
 use rayon::prelude::*;
 
+use super::{PressureScratch, Pressures};
 use crate::cloth::Cloth;
 use crate::error::{Error, Result};
 use crate::force::field::Field;
@@ -117,6 +118,7 @@ type Blowing = (Wind, Option<Vec<bool>>);
 /// All winds and fields, and what they need to know of the meshes.
 #[derive(Debug)]
 pub(crate) struct Air {
+    pub(crate) pressures: Pressures,
     winds: Vec<Blowing>,
     fields: Fields,
     /// Corners of all faces, in the simulation's numbering.
@@ -130,6 +132,7 @@ pub(crate) struct Air {
 /// What the air does to each face in the present state, and fields to each particle.
 #[derive(Debug, Default)]
 pub(crate) struct AirScratch {
+    pub(crate) pressure: PressureScratch,
     faces: Vec<FaceAir>,
     /// Empty where there are no fields.
     pushed: Vec<Pushed>,
@@ -173,6 +176,7 @@ impl Air {
         });
         let masses = cloths.iter().flat_map(|cloth| cloth.masses.iter().copied());
         Self {
+            pressures: Pressures::new(cloths),
             winds: winds.collect(),
             fields: Fields::new(masses.collect()),
             face_starts,
@@ -183,7 +187,7 @@ impl Air {
     }
 
     pub(crate) fn is_still(&self) -> bool {
-        self.winds.is_empty() && self.fields.is_empty()
+        self.winds.is_empty() && self.fields.is_empty() && self.pressures.is_empty()
     }
 
     /// Takes these fields in the place of those before.
@@ -245,7 +249,7 @@ impl Air {
             return [0.0; 2];
         }
         let mut scratch = AirScratch::default();
-        self.observe_with(state, &mut scratch, gain);
+        self.observe_flow(state, &mut scratch, gain);
         let rates = scratch.pushed.iter().zip(inverse_masses);
         rates.fold([0.0; 2], |[damping, stiffness], (pushed, w)| {
             [f64::max(damping, pushed.damping * w), f64::max(stiffness, pushed.stiffness * w)]
@@ -265,7 +269,7 @@ impl Air {
             return 0.0;
         }
         let mut scratch = AirScratch::default();
-        self.observe(state, &mut scratch);
+        self.observe_flow(state, &mut scratch, 0.0);
         let share_of = |particle: usize, face: &FaceAir| {
             let blowing = pressing.iter().filter(|(.., mask)| reaches(*mask, particle));
             let slopes = blowing.map(|&(air_density, velocity, _)| {
@@ -282,10 +286,16 @@ impl Air {
 
     /// Looks at every face in `state`, and where there are fields at every particle.
     pub(crate) fn observe(&self, state: &State, scratch: &mut AirScratch) {
-        self.observe_with(state, scratch, 0.0);
+        if !(self.winds.is_empty() && self.fields.is_empty()) {
+            self.observe_flow(state, scratch, 0.0);
+        }
+        if !self.pressures.is_empty() {
+            self.pressures.observe(state, &mut scratch.pressure);
+        }
     }
 
-    fn observe_with(&self, state: &State, scratch: &mut AirScratch, gain: f64) {
+    /// Looks at faces and particles that may become faster by `gain` (m/s).
+    fn observe_flow(&self, state: &State, scratch: &mut AirScratch, gain: f64) {
         scratch.faces.resize(self.face_starts.len() - 1, FaceAir::default());
         scratch.faces.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(face, air)| {
             *air = self.face_air(face, state);
@@ -332,7 +342,7 @@ impl Air {
         }
     }
 
-    /// Adds the forces (N) of winds and fields on the particles of a chunk.
+    /// Adds the forces (N) of winds, fields and pressure on the particles of a chunk.
     pub(crate) fn add_forces(
         &self,
         chunk: usize,
@@ -342,7 +352,10 @@ impl Air {
     ) {
         let first = chunk * CHUNK;
         for particle in first..(first + CHUNK).min(state.len()) {
-            let push = self.force_on(particle, state, scratch);
+            let mut push = self.force_on(particle, state, scratch);
+            if let Some(pressure) = scratch.pressure.force(particle) {
+                push += pressure;
+            }
             for axis in 0..3 {
                 force[axis][particle - first] += push[axis];
             }

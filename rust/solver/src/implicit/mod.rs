@@ -24,6 +24,7 @@
 
 mod hessian;
 mod history;
+mod inflated;
 mod momentum;
 mod preconditioner;
 mod pull;
@@ -43,6 +44,7 @@ use crate::system::{Motion, Rate, System};
 use hessian::Hessian;
 use history::Formula;
 pub(crate) use history::Memory;
+use inflated::Inflated;
 use momentum::Pieces;
 use preconditioner::Preconditioner;
 use smoothed::{Scratch, Smoothed};
@@ -147,6 +149,16 @@ impl Implicit {
     pub(crate) fn follow_pins(&mut self, system: &System) {
         self.preconditioner.forget();
         self.pieces.follow_pins(|particle| system.is_pinned(particle));
+    }
+
+    /// Takes the present rest lengths of a cloth's springs; `base` is the number of its first particle.
+    pub(crate) fn follow_rest_lengths(&mut self, cloth: &Cloth, base: u32) {
+        self.taut.follow_rest_lengths(cloth, base);
+    }
+
+    /// Takes the present stiffness of the cloths' springs.
+    pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth]) {
+        self.preconditioner.follow_stiffness(cloths);
     }
 
     /// Moves `state` by one step of h seconds, among contacts that were told of the step.
@@ -301,16 +313,16 @@ impl Implicit {
 
     /// Solves for the move from the present guess.
     fn solve(&mut self, system: &System, contacts: &Contacts, h: f64) -> Solved {
-        let Self { preconditioner, hessian, blocks, scratch, gradients, .. } = self;
+        let Self { preconditioner, hessian, blocks, scratch, gradients, air, .. } = self;
         let matrix = &hessian.without_bends(&system.layout, &contacts.matrix);
         let inverse = preconditioner.inverse(system, h);
-        let operator = &hessian.on(&system.layout, &contacts.matrix);
+        let operator = hessian.on(&system.layout, &contacts.matrix);
         let contacts = &contacts.matrix;
-        gradients.solve(
-            operator,
-            &mut Smoothed { matrix, contacts, blocks, inverse, scratch },
-            STOP,
-        )
+        let smoothed = &mut Smoothed { matrix, contacts, blocks, inverse, scratch };
+        if system.air.pressures.is_empty() {
+            return gradients.solve(&operator, smoothed, STOP);
+        }
+        gradients.solve(&Inflated::new(operator, system, air), smoothed, STOP)
     }
 
     /// Moves the guess by the solution.

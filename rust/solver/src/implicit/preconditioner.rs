@@ -100,6 +100,16 @@ impl Preconditioner {
         Some((inverse.as_mut()?.as_inverse(), Forward { graph, matrix }))
     }
 
+    /// Takes the present stiffness of the cloths' springs.
+    pub(super) fn follow_stiffness(&mut self, cloths: &[Cloth]) {
+        let springs = cloths.iter().flat_map(|cloth| &cloth.springs);
+        let inner = springs.filter(|spring| spring.kind != SpringKind::Bend);
+        for (own, spring) in self.springs.iter_mut().zip(inner) {
+            *own = [spring.stiffness, spring.damping];
+        }
+        self.forget();
+    }
+
     /// Factors anew at the next step: pins have changed.
     pub(super) fn forget(&mut self) {
         self.step = 0.0;

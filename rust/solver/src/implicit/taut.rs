@@ -81,6 +81,8 @@ pub(super) struct Taut {
     pulling: Vec<Pulling>,
     /// Factor of kappa at the last freeze.
     stiffer: f64,
+    /// (m/s²)
+    gravity: f64,
 }
 
 impl Taut {
@@ -96,7 +98,7 @@ impl Taut {
             let is_stretch = |spring: &&Spring| spring.kind == SpringKind::Stretch;
             let stretch: Vec<_> = cloth.springs.iter().filter(is_stretch).collect();
             let ends = |spring: &&Spring| spring.ends.map(|end| base + end);
-            let places = layout.places(stretch.iter().map(ends), count);
+            let places = layout.places(stretch.iter().map(ends), count, false);
             edges.extend(stretch.iter().zip(places).filter_map(|(spring, place)| {
                 let kappa = KAPPA * spring.stiffness;
                 Some(Edge {
@@ -109,7 +111,25 @@ impl Taut {
             }));
         }
         let tensions = vec![0.0; edges.len()];
-        Self { edges, tensions, pulling: Vec::new(), stiffer: 1.0 }
+        Self { edges, tensions, pulling: Vec::new(), stiffer: 1.0, gravity }
+    }
+
+    /// Takes the present rest lengths of a cloth's springs; `base` is the number of its first particle.
+    pub(super) fn follow_rest_lengths(&mut self, cloth: &Cloth, base: u32) {
+        let allowed = 1.0 + cloth.material.deformation_rate;
+        let most_by_weight = MOST_WEIGHTS * self.gravity * cloth.masses.iter().sum::<f64>();
+        let particles = base..base + cloth.positions.len() as u32;
+        let mut edges = self.edges.iter_mut().filter(|edge| particles.contains(&edge.ends[0]));
+        let mut next = edges.next();
+        for spring in cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Stretch) {
+            let Some(edge) = &mut next else { return };
+            if edge.ends != spring.ends.map(|end| base + end) {
+                continue;
+            }
+            edge.allowed = allowed * spring.rest_length;
+            edge.most = MOST_STRAIN * edge.kappa * spring.rest_length + most_by_weight;
+            next = edges.next();
+        }
     }
 
     /// The edges that pull, as the last freeze found them.

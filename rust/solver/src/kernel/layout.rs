@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::CHUNK;
-use crate::cloth::Cloth;
+use crate::cloth::{Cloth, placed};
 use crate::law::Spring;
 use crate::law::spring::Law;
 use crate::material::SpringKind;
@@ -76,6 +76,8 @@ pub(crate) struct Layout {
     pub(crate) gathers: Vec<Gather>,
     pub(crate) gather_slots: Vec<GatherSlot>,
     pub(crate) gathers_of_chunk: Vec<Range<usize>>,
+    /// Slot and lane of both ends of each seam.
+    pub(crate) seams: Vec<[(u32, u32); 2]>,
 }
 
 /// A spring as one of its ends sees it.
@@ -96,7 +98,8 @@ impl Layout {
             laws.resize(base + cloth.positions.len(), law);
             halves.resize(laws.len(), Vec::new());
             for springs in alike(cloth).into_values() {
-                if springs.len() * SPARSEST >= cloth.positions.len() {
+                let may_be_diagonal = springs[0].kind != SpringKind::Sewing;
+                if may_be_diagonal && springs.len() * SPARSEST >= cloth.positions.len() {
                     layout.diagonals.push(diagonal(&springs, base, law));
                 } else {
                     scatter(&springs, base as u32, &mut halves);
@@ -107,14 +110,16 @@ impl Layout {
             let end = (start + CHUNK).min(laws.len());
             layout.add_gathers(start..end, &halves, &laws);
         }
+        layout.find_seams(cloths, laws.len());
         layout
     }
 
-    /// Where springs between these pairs of particles are, other than bend springs; none for pairs that none joins.
+    /// Where springs between these pairs of particles are, bend springs or others; none for pairs that none joins.
     pub(crate) fn places(
         &self,
         pairs: impl IntoIterator<Item = [u32; 2]>,
         particle_count: usize,
+        is_bend: bool,
     ) -> Vec<Option<Place>> {
         let mut gathered = vec![None; particle_count];
         for gather in &self.gathers {
@@ -126,7 +131,9 @@ impl Layout {
             let (gather, lane) = gathered[own as usize]?;
             let slot = gather.slots.clone().find(|&slot| {
                 let slot = &self.gather_slots[slot];
-                slot.neighbors[lane] == other && slot.rest_lengths[lane] > 0.0 && !slot.is_bend
+                slot.neighbors[lane] == other
+                    && slot.rest_lengths[lane] > 0.0
+                    && slot.is_bend == is_bend
             });
             Some((slot? as u32, lane as u32))
         };
@@ -136,7 +143,7 @@ impl Layout {
                 let springs = first.checked_sub(diagonal.first);
                 let rest_length = springs.and_then(|spring| diagonal.rest_lengths.get(spring));
                 let joins = rest_length.is_some_and(|length| *length > 0.0);
-                joins && diagonal.offset == offset && !diagonal.is_bend
+                joins && diagonal.offset == offset && diagonal.is_bend == is_bend
             });
             if let Some(diagonal) = diagonal {
                 let spring = first - self.diagonals[diagonal].first;
@@ -145,6 +152,48 @@ impl Layout {
             Some(Place::Gathered([end(a, b)?, end(b, a)?]))
         };
         pairs.into_iter().map(place).collect()
+    }
+
+    fn find_seams(&mut self, cloths: &[Cloth], particle_count: usize) {
+        let seams: Vec<[u32; 2]> = placed(cloths)
+            .flat_map(|(cloth, base)| {
+                let seams = cloth.springs.iter().filter(|s| s.kind == SpringKind::Sewing);
+                seams.map(move |seam| seam.ends.map(|end| base + end))
+            })
+            .collect();
+        if seams.is_empty() {
+            return;
+        }
+        let places = self.places(seams, particle_count, false).into_iter().flatten();
+        self.seams = places
+            .filter_map(|place| match place {
+                Place::Gathered(ends) => Some(ends),
+                Place::Diagonal(..) => None,
+            })
+            .collect();
+    }
+
+    /// Gives both ends of a seam, by its number among all, another stiffness (N/m) and damping (N·s/m).
+    pub(crate) fn set_seam(&mut self, seam: usize, stiffness: f64, damping: f64) {
+        for (slot, lane) in self.seams[seam] {
+            let slot = &mut self.gather_slots[slot as usize];
+            slot.stiffness[lane as usize] = stiffness;
+            slot.damping[lane as usize] = damping;
+        }
+    }
+
+    /// Gives the spring at a place another rest length (m).
+    pub(crate) fn set_rest_length(&mut self, place: Place, rest_length: f64) {
+        match place {
+            Place::Diagonal(diagonal, spring) => {
+                self.diagonals[diagonal as usize].rest_lengths[spring as usize] = rest_length;
+            }
+            Place::Gathered(ends) => {
+                for (slot, lane) in ends {
+                    self.gather_slots[slot as usize].rest_lengths[lane as usize] = rest_length;
+                }
+            }
+        }
     }
 
     fn add_gathers(&mut self, chunk: Range<usize>, halves: &[Vec<Half>], laws: &[Law]) {

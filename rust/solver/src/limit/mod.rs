@@ -32,6 +32,19 @@ impl Limit {
         }
     }
 
+    /// Takes the present rest lengths of a cloth, if it is that whose first particle is `base`.
+    pub(crate) fn follow_rest_lengths(&mut self, cloth: &Cloth, base: u32) {
+        match self {
+            Self::Provot(limit) if limit.base == base => {
+                limit.follow_rest_lengths(&cloth.springs, 1.0 + cloth.material.deformation_rate);
+            }
+            Self::Project(limit) if limit.base == base => {
+                limit.follow_rest_lengths(&cloth.springs);
+            }
+            Self::Provot(_) | Self::Project(_) => {}
+        }
+    }
+
     /// The longest step (s) that a cloth's limiter keeps up with.
     pub(crate) fn longest_step(cloth: &Cloth, gravity: f64) -> f64 {
         match cloth.material.limiter {

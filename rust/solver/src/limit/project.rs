@@ -17,9 +17,12 @@
 //!
 //! Source: Provot 1995 and Zhong & Xu 2009 for the corrections; the outward metric is our own.
 
+use std::collections::BTreeMap;
+
 use super::order::{Edge, outward};
 use crate::cloth::Cloth;
 use crate::contact::Walls;
+use crate::law::Spring;
 use crate::material::SpringKind;
 use crate::state::State;
 
@@ -55,7 +58,9 @@ const METRICS: [Evenness; 3] = [Evenness::Outward, Evenness::Between, Evenness::
 pub(crate) struct Project {
     edges: Vec<Edge>,
     allowed: f64,
-    base: u32,
+    pub(super) base: u32,
+    /// For each edge the number of its spring, once rest lengths have changed.
+    spring_of: Vec<u32>,
     /// For each particle of the cloth, where its edges begin in `edges_of`, and the end of the last.
     starts: Vec<u32>,
     edges_of: Vec<u32>,
@@ -97,12 +102,32 @@ impl Project {
         Self {
             allowed: 1.0 + cloth.material.deformation_rate,
             base,
+            spring_of: Vec::new(),
             starts: std::iter::once(0).chain(ends).collect(),
             edges_of: of_particle.concat(),
             now: BitSet::new(edges.len()),
             later: BitSet::new(edges.len()),
             moved: BitSet::new(edges.len()),
             edges,
+        }
+    }
+
+    /// Takes the present rest lengths of a cloth's springs. The order of the edges stays.
+    pub(super) fn follow_rest_lengths(&mut self, springs: &[Spring]) {
+        if self.spring_of.is_empty() {
+            let numbered = springs.iter().map(|s| (s.kind, s.ends)).zip(0_u32..);
+            let number_of: BTreeMap<_, u32> = numbered.collect();
+            let spring_of = |edge: &Edge| {
+                let (a, b) = (edge.near, edge.far);
+                let number = |ends| number_of.get(&(SpringKind::Stretch, ends)).copied();
+                number([a, b]).or_else(|| number([b, a])).unwrap_or(u32::MAX)
+            };
+            self.spring_of = self.edges.iter().map(spring_of).collect();
+        }
+        for (edge, &number) in self.edges.iter_mut().zip(&self.spring_of) {
+            if let Some(spring) = springs.get(number as usize) {
+                edge.rest_length = spring.rest_length;
+            }
         }
     }
 

@@ -13,11 +13,17 @@
 //! Source: Provot 1995.
 
 use crate::cloth::Cloth;
+use crate::law::Spring;
 use crate::material::SpringKind;
 use crate::state::State;
 
+fn is_limited(spring: &Spring) -> bool {
+    matches!(spring.kind, SpringKind::Stretch | SpringKind::Shear)
+}
+
 #[derive(Debug)]
 pub(crate) struct Provot {
+    pub(super) base: u32,
     springs: Vec<Limited>,
 }
 
@@ -30,12 +36,20 @@ struct Limited {
 impl Provot {
     pub(crate) fn new(cloth: &Cloth, base: u32) -> Self {
         let allowed = 1.0 + cloth.material.deformation_rate;
-        let springs = cloth.springs.iter().filter(|spring| spring.kind != SpringKind::Bend);
+        let springs = cloth.springs.iter().filter(|spring| is_limited(spring));
         let limited = springs.map(|spring| Limited {
             ends: spring.ends.map(|end| end + base),
             longest: allowed * spring.rest_length,
         });
-        Self { springs: limited.collect() }
+        Self { base, springs: limited.collect() }
+    }
+
+    /// Takes the present rest lengths of a cloth's springs.
+    pub(super) fn follow_rest_lengths(&mut self, springs: &[Spring], allowed: f64) {
+        let limited = springs.iter().filter(|spring| is_limited(spring));
+        for (own, spring) in self.springs.iter_mut().zip(limited) {
+            own.longest = allowed * spring.rest_length;
+        }
     }
 
     pub(crate) fn apply(&self, state: &mut State, inverse_masses: &[f64], h: f64) {

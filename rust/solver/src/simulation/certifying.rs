@@ -15,10 +15,12 @@ impl Simulation {
     /// The certificate of some cloths: strain, energies and hash are theirs, all else is the whole simulation's.
     #[must_use]
     pub fn certificate_of(&self, cloths: Range<usize>) -> Certificate {
+        let of_pressure = self.system.air.pressures.energy(cloths.clone(), &self.state);
         let cloths = self.cloths[cloths.clone()].iter().zip(self.bases[cloths].iter().copied());
         let certificate =
             certify(cloths, &self.state, &self.settings.gravity, self.frame, self.substeps_taken);
         Certificate {
+            potential_energy: certificate.potential_energy + of_pressure,
             iterations: self.iterations_taken,
             intersections: self.intersections,
             clipped: self.clipped,

@@ -35,7 +35,9 @@ impl Simulation {
         let fall = self.settings.gravity.norm() * self.frame_duration();
         let pressure = air.pressure_damping(&self.state, inverse_masses, fall);
         let [damping, w_squared] = air.field_rates(&self.state, inverse_masses, fall);
-        let spectrum = self.spectrum.stiffened(factor).with(pressure + damping, w_squared);
+        let inflation = air.pressures.stiffness(&self.state, inverse_masses);
+        let spectrum =
+            self.spectrum.stiffened(factor).with(pressure + damping, w_squared + inflation);
         spectrum.largest_step(rule, self.frame_duration())
     }
 

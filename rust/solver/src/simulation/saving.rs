@@ -17,6 +17,7 @@ impl Simulation {
             state: self.state.clone(),
             memory: self.method.memory().cloned(),
             colliders: self.contacts.collider_positions().to_vec(),
+            shape: self.shape_numbers(),
             is_pinned: (0..count).map(|particle| self.system.is_pinned(particle)).collect(),
         };
         checkpoint.to_bytes()
@@ -47,6 +48,9 @@ impl Simulation {
         let pinned = checkpoint.is_pinned.iter().enumerate().filter(|&(_, &is_pinned)| is_pinned);
         self.pins = Pins::new(pinned.map(|(particle, _)| particle as u32), &self.state);
         self.follow_pins();
+        if !self.take_shape_numbers(&checkpoint.shape) {
+            return Err(Error::BadCheckpoint("is damaged; accepted: a whole one"));
+        }
         self.intersect();
         Ok(())
     }

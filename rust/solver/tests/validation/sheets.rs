@@ -3,7 +3,7 @@
 use boucle_geometry::{Mesh, Vector};
 use boucle_solver::{
     Cloth, IntegratorKind, Limiter, Mass, Settings, Simulation, Spring, SpringKind, SpringMaterial,
-    StepSize, Wind,
+    StepSize, Tailoring, Wind,
 };
 
 /// Standard gravity of the tests (m/s²).
@@ -76,6 +76,8 @@ pub(crate) fn network(
         pins,
         material,
         collision: None,
+        tailoring: Tailoring::default(),
+        pressure: None,
     }
 }
 

@@ -93,6 +93,18 @@ impl Hessian {
             let gather = &layout.gathers[slot.gather as usize];
             freeze_slot(slot, &gather.particles, gather.law, positions, h, out);
         });
+        self.freeze_seams(layout, h);
+    }
+
+    /// A seam resists all ways alike, closed or not: closed, it has no direction of its own.
+    fn freeze_seams(&mut self, layout: &Layout, h: f64) {
+        for (slot, lane) in layout.seams.iter().flatten() {
+            let (slot, lane) = (*slot as usize, *lane as usize);
+            let springs = &layout.gather_slots[slot];
+            let [x, y, z, beta] = &mut self.slots[slot];
+            (x[lane], y[lane], z[lane]) = (0.0, 0.0, 0.0);
+            beta[lane] = (springs.stiffness[lane] + springs.damping[lane] / h) as f32;
+        }
     }
 
     /// Adds what edges at their limit add to the tangents of their springs.

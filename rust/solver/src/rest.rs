@@ -1,0 +1,132 @@
+//! Rest lengths that change: by shrink, or as a rest shape that moves.
+//!
+//! A spring between vertices i and j whose rest shape spans L (m) has the rest length
+//!
+//! ```text
+//! L sqrt((1 - s_i) (1 - s_j))          (m)
+//! ```
+//!
+//! with the shrink s at both. Over a frame rest lengths go evenly from what they were to what they are to be. Stiffness and
+//! mass stay those of the cloth as it was given.
+//!
+//! Source: the geometric mean is Blender's.
+
+use boucle_geometry::Vector;
+
+use crate::cloth::Cloth;
+use crate::kernel::{Layout, Place};
+use crate::material::SpringKind;
+use crate::tailoring::CLOSED;
+
+/// The rest lengths (m) of one cloth's springs.
+#[derive(Debug)]
+pub(crate) struct Rest {
+    /// As the cloth was given.
+    given: Vec<f64>,
+    /// As the frame begins, and as it ends.
+    from: Vec<f64>,
+    to: Vec<f64>,
+    /// Where the kernel has each spring.
+    places: Vec<Option<Place>>,
+}
+
+impl Rest {
+    /// Of a cloth as it was given, whose first particle is `base`.
+    pub(crate) fn new(cloth: &Cloth, base: u32, layout: &Layout, particle_count: usize) -> Self {
+        let given: Vec<f64> = cloth.springs.iter().map(|spring| spring.rest_length).collect();
+        let places_of = |is_bend: bool| {
+            let springs = cloth.springs.iter();
+            let chosen = springs.filter(|spring| (spring.kind == SpringKind::Bend) == is_bend);
+            let pairs = chosen.map(|spring| spring.ends.map(|end| base + end));
+            layout.places(pairs, particle_count, is_bend).into_iter()
+        };
+        let (mut bends, mut others) = (places_of(true), places_of(false));
+        let place = |kind| if kind == SpringKind::Bend { bends.next() } else { others.next() };
+        let kinds = cloth.springs.iter().map(|spring| spring.kind);
+        let places = kinds.map(place).map(Option::flatten).collect();
+        Self { from: given.clone(), to: given.clone(), given, places }
+    }
+
+    /// Sends rest lengths to those of a rest shape (m) with shrink, the cloth's own shape if none is given, without any if
+    /// empty.
+    pub(crate) fn aim(&mut self, cloth: &Cloth, shape: Option<&[Vector]>, shrink: &[f64]) {
+        let factor = |end: u32| shrink.get(end as usize).map_or(1.0, |shrink| 1.0 - shrink);
+        let springs = cloth.springs.iter().zip(&self.given);
+        for (to, (spring, given)) in self.to.iter_mut().zip(springs) {
+            if spring.kind == SpringKind::Sewing {
+                continue;
+            }
+            let [a, b] = spring.ends;
+            let whole =
+                shape.map_or(*given, |shape| (shape[a as usize] - shape[b as usize]).norm());
+            let factors = factor(a) * factor(b);
+            // Without shrink the bits are those of the rest shape.
+            let shrunk = if factors == 1.0 { whole } else { whole * factors.sqrt() };
+            *to = shrunk.max(CLOSED);
+        }
+    }
+
+    /// The rest lengths that are aimed at.
+    pub(crate) fn target(&self) -> &[f64] {
+        &self.to
+    }
+
+    /// Goes back to the rest lengths of the cloth as it was given.
+    pub(crate) fn aim_at_given(&mut self) {
+        self.to.copy_from_slice(&self.given);
+    }
+
+    /// Takes these rest lengths at once; false if they are not those of its springs.
+    pub(crate) fn jump(&mut self, lengths: &[f64]) -> bool {
+        let fits = lengths.len() == self.to.len() && lengths.iter().all(|&length| length >= CLOSED);
+        if fits {
+            self.to.copy_from_slice(lengths);
+            self.arrive();
+        }
+        fits
+    }
+
+    /// Whether they change over the frame.
+    pub(crate) fn moves(&self) -> bool {
+        self.from != self.to
+    }
+
+    /// Ends the frame: what it led to is where the next begins.
+    pub(crate) fn arrive(&mut self) {
+        self.from.copy_from_slice(&self.to);
+    }
+
+    /// Gives springs and kernel the rest lengths after a part of the frame.
+    pub(crate) fn put(&self, part: f64, cloth: &mut Cloth, layout: &mut Layout) {
+        let ends = self.from.iter().zip(&self.to).zip(&self.places);
+        for (spring, ((from, to), place)) in cloth.springs.iter_mut().zip(ends) {
+            // What arrives is exactly there.
+            spring.rest_length = if part == 1.0 { *to } else { from + part * (to - from) };
+            if let Some(place) = place {
+                layout.set_rest_length(*place, spring.rest_length);
+            }
+        }
+    }
+
+    /// Gives springs the rest lengths of the cloth as it was given.
+    pub(crate) fn put_given(&self, cloth: &mut Cloth) {
+        for (spring, given) in cloth.springs.iter_mut().zip(&self.given) {
+            spring.rest_length = *given;
+        }
+    }
+
+    /// For each vertex, how far its edges are to shrink: the least ratio of rest length to that given, at most 1.
+    pub(crate) fn scales(&self, cloth: &Cloth) -> Vec<f64> {
+        let mut scales = vec![1.0_f64; cloth.positions.len()];
+        let lengths = self.to.iter().zip(&self.given);
+        for (spring, (to, given)) in cloth.springs.iter().zip(lengths) {
+            if spring.kind == SpringKind::Stretch {
+                for end in spring.ends {
+                    let scale = &mut scales[end as usize];
+                    *scale = scale.min(to / given);
+                }
+            }
+        }
+        scales
+    }
+}

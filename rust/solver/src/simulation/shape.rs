@@ -1,0 +1,228 @@
+//! What changes a cloth's shape from frame to frame: rest lengths, pressure, seams that weld.
+
+use boucle_geometry::Vector;
+
+use super::Simulation;
+use crate::cloth::check_positions;
+use crate::error::{Error, Result};
+use crate::force::Level;
+use crate::limit::Limit;
+use crate::material::SpringKind;
+use crate::rest::Rest;
+use crate::tailoring::check_shrink;
+
+impl Simulation {
+    /// What the rest lengths of a cloth are to be at the end of the next frame: those of a rest shape (m), its own if `None`,
+    /// with shrink at each vertex, as the cloth was given if `None`. Over the frame they change evenly.
+    ///
+    /// # Errors
+    /// [`Error::BadCloth`] when there are not as many numbers as vertices, or one is out of its domain.
+    pub fn set_rest(
+        &mut self,
+        cloth: usize,
+        shape: Option<&[Vector]>,
+        shrink: Option<&[f64]>,
+    ) -> Result<()> {
+        let given = &self.cloths[cloth];
+        let count = given.positions.len();
+        if let Some(shape) = shape {
+            if shape.len() != count {
+                let got = shape.len();
+                let reason = format!("{got} rest positions are given; accepted: {count}");
+                return Err(Error::BadCloth { cloth: given.name.clone(), reason });
+            }
+            check_positions(&given.name, shape)?;
+        }
+        check_shrink(&given.name, shrink.unwrap_or(&[]), count)?;
+        self.ensure_rest(cloth);
+        if let Some(rest) = &mut self.rests[cloth] {
+            let given = &self.cloths[cloth];
+            rest.aim(given, shape, shrink.unwrap_or(&given.tailoring.shrink));
+            self.contacts.scale_rest(self.bases[cloth], &rest.scales(given));
+        }
+        Ok(())
+    }
+
+    /// The pressure of a cloth at the end of the next frame, if it was given one: see [`Pressure`](crate::Pressure).
+    ///
+    /// # Errors
+    /// [`Error::OutOfDomain`] for a number that is not accepted.
+    pub fn set_pressure(
+        &mut self,
+        cloth: usize,
+        uniform: f64,
+        factor: f64,
+        target_volume: Option<f64>,
+    ) -> Result<()> {
+        let weights = Vec::new();
+        let pressure = crate::Pressure { uniform, factor, target_volume, weights };
+        pressure.check(&self.cloths[cloth].name, self.cloths[cloth].positions.len())?;
+        self.system.air.pressures.aim(cloth, uniform, factor, target_volume);
+        Ok(())
+    }
+
+    /// The present volume (m³) of a cloth that has a pressure.
+    #[must_use]
+    pub fn volume(&self, cloth: usize) -> Option<f64> {
+        self.system.air.pressures.volume(cloth, &self.state)
+    }
+
+    /// How many seams of a cloth are welded.
+    #[must_use]
+    pub fn welded_seams(&self) -> usize {
+        self.seams.welded().filter(|is_welded| *is_welded).count()
+    }
+
+    /// Begins to keep the rest lengths of a cloth, whose springs are still as they were given.
+    fn ensure_rest(&mut self, cloth: usize) {
+        let Self { rests, cloths, bases, system, .. } = self;
+        let count = system.particle_count();
+        rests[cloth].get_or_insert_with(|| {
+            Box::new(Rest::new(&cloths[cloth], bases[cloth], &system.layout, count))
+        });
+    }
+
+    /// Shrinks cloths that are shrunk from the first.
+    pub(super) fn shrink_from_the_first(&mut self) -> Result<()> {
+        let shrunk = |cloth: &usize| self.cloths[*cloth].tailoring.shrink.iter().any(|s| *s != 0.0);
+        let cloths: Vec<usize> = (0..self.cloths.len()).filter(shrunk).collect();
+        for cloth in cloths {
+            self.set_rest(cloth, None, None)?;
+            self.put_rest(cloth, 1.0);
+            if let Some(rest) = &mut self.rests[cloth] {
+                rest.arrive();
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes rest lengths, pressures and the force of seams after a part of the frame.
+    pub(super) fn shape(&mut self, part: f64, is_start: bool) {
+        for cloth in 0..self.rests.len() {
+            if self.rests[cloth].as_ref().is_some_and(|rest| rest.moves()) {
+                self.put_rest(cloth, part);
+            }
+        }
+        if !self.system.air.pressures.is_empty() {
+            self.system.air.pressures.put(part);
+        }
+        if !is_start {
+            self.seams.limit(&self.state.position, &mut self.system.layout);
+        }
+    }
+
+    /// Ends a frame: what it led to is where the next begins, and seams that have closed are welded.
+    pub(super) fn end_shape(&mut self) {
+        self.rests.iter_mut().flatten().for_each(|rest| rest.arrive());
+        self.system.air.pressures.arrive();
+        let Self { seams, state, cloths, system, .. } = self;
+        if !seams.is_empty() && seams.weld(&state.position, cloths, &mut system.layout) {
+            self.follow_welds();
+        }
+    }
+
+    fn follow_welds(&mut self) {
+        self.method.follow_stiffness(&self.cloths);
+        self.follow_pins();
+    }
+
+    fn put_rest(&mut self, cloth: usize, part: f64) {
+        let Self { rests, cloths, bases, system, method, limits, .. } = self;
+        let Some(rest) = &rests[cloth] else { return };
+        let (own, base) = (&mut cloths[cloth], bases[cloth]);
+        rest.put(part, own, &mut system.layout);
+        method.follow_rest_lengths(own, base);
+        limits.iter_mut().for_each(|limit| limit.follow_rest_lengths(own, base));
+    }
+
+    /// The limiter of a cloth: its order is that of the rest lengths as they were given.
+    pub(super) fn limit_of(&mut self, cloth: usize) -> Option<Limit> {
+        let (own, base) = (&mut self.cloths[cloth], self.bases[cloth]);
+        let inverse_masses = &self.system.inverse_masses;
+        let Some(rest) = &self.rests[cloth] else {
+            return Limit::of(own, base, inverse_masses);
+        };
+        let present: Vec<f64> = own.springs.iter().map(|spring| spring.rest_length).collect();
+        rest.put_given(own);
+        let mut limit = Limit::of(own, base, inverse_masses)?;
+        for (spring, present) in own.springs.iter_mut().zip(present) {
+            spring.rest_length = present;
+        }
+        limit.follow_rest_lengths(own, base);
+        Some(limit)
+    }
+
+    /// The numbers of a checkpoint: for each cloth how many rest lengths are kept, and those; pressures; welded seams.
+    pub(super) fn shape_numbers(&self) -> Vec<f64> {
+        let mut numbers = Vec::new();
+        if self.rests.iter().any(Option::is_some) {
+            for rest in &self.rests {
+                let lengths = rest.as_ref().map_or(&[][..], |rest| rest.target());
+                numbers.push(lengths.len() as f64);
+                numbers.extend(lengths);
+            }
+        } else if !self.seams.is_empty() || !self.system.air.pressures.is_empty() {
+            numbers.resize(self.rests.len(), 0.0);
+        }
+        numbers.extend(self.system.air.pressures.targets().flatten());
+        numbers.extend(self.seams.welded().map(|is_welded| if is_welded { 1.0 } else { 0.0 }));
+        numbers
+    }
+
+    /// Takes up the numbers of a checkpoint; false if they are not of these cloths.
+    pub(super) fn take_shape_numbers(&mut self, numbers: &[f64]) -> bool {
+        let mut rest_of_numbers = numbers;
+        let mut take = |count: usize| {
+            let (taken, others) = rest_of_numbers.split_at_checked(count)?;
+            rest_of_numbers = others;
+            Some(taken.to_vec())
+        };
+        let mut lengths = vec![Vec::new(); self.cloths.len()];
+        if !numbers.is_empty() {
+            for lengths in &mut lengths {
+                let Some(count) = take(1) else { return false };
+                let Some(own) = take(count[0] as usize) else { return false };
+                *lengths = own;
+            }
+        }
+        let level_count = self.system.air.pressures.targets().count();
+        let seam_count = self.seams.welded().count();
+        let (Some(levels), Some(welded)) = (take(3 * level_count), take(seam_count)) else {
+            return numbers.is_empty() && self.take_lengths(&lengths);
+        };
+        let levels = levels.as_chunks::<3>().0.iter().copied().map(Level::from);
+        self.system.air.pressures.jump(levels);
+        let Self { seams, cloths, system, .. } = self;
+        if seams.jump(welded.iter().map(|w| *w > 0.0), cloths, &mut system.layout) {
+            self.follow_welds();
+        }
+        self.take_lengths(&lengths)
+    }
+
+    fn take_lengths(&mut self, lengths: &[Vec<f64>]) -> bool {
+        for (cloth, lengths) in lengths.iter().enumerate() {
+            if !lengths.is_empty() {
+                self.ensure_rest(cloth);
+            }
+            let Some(rest) = &mut self.rests[cloth] else { continue };
+            if lengths.is_empty() {
+                rest.aim_at_given();
+                rest.arrive();
+            } else if !rest.jump(lengths) {
+                return false;
+            }
+            self.contacts.scale_rest(self.bases[cloth], &rest.scales(&self.cloths[cloth]));
+            self.put_rest(cloth, 1.0);
+        }
+        true
+    }
+
+    /// The seams of a cloth and how far apart (m) the ends of each are.
+    #[must_use]
+    pub fn seam_gaps(&self, cloth: usize) -> Vec<f64> {
+        let (cloth, base) = (&self.cloths[cloth], self.bases[cloth]);
+        let seams = cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Sewing);
+        let ends = seams.map(|seam| seam.ends.map(|end| base + end));
+        ends.map(|[a, b]| self.state.position.distance_squared(a, b).sqrt()).collect()
+    }
+}

@@ -1,0 +1,185 @@
+"""The add-on in a real Blender's window: `python3 scripts/dev.py gui [WORD...]`.
+
+Numbered: a Debian 13 folder with Blender and an X server; the zip of this machine; that zip installed in a fresh Blender;
+a scenario (gui_scenario.py) that runs inside the window; a table of its steps. Blender asks for what it cannot do itself,
+key strokes, mouse moves and photographs of the screen, by lines in a file (gui_inside.py); this script does them.
+Standard library only.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import shutil
+import subprocess
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import debian
+from environment import OUT, ROOT, SCRIPTS, Failed, heading, run, stop
+
+PACKAGES = ("blender", "xvfb", "xdotool", "imagemagick", "libgl1-mesa-dri")
+FOLDER = OUT / "gui"
+SCREEN = (1920, 2800)
+"""Tall enough for every panel of the Physics tab at once."""
+WINDOW = (1280, 960)
+SECONDS = 600
+"""The whole scenario takes about three minutes; a window that hangs must not hold us up."""
+ACTION_SECONDS = 30
+HARMLESS = ("ALSA", "AL lib", "Color management", "unable to open a display")
+
+
+def require() -> None:
+    """Make the folder with Blender in it, before anything is built.
+
+    Raises:
+        Missing: This system cannot.
+    """
+    debian.ensure(*PACKAGES)
+
+
+def gui(zip_file: Path, words: Sequence[str] = ()) -> None:
+    """Install `zip_file` in a fresh Blender and play the scenario in its window.
+
+    Args:
+        zip_file: The extension.
+        words: Only steps whose names hold one of these; all of them if there are none.
+
+    Raises:
+        Failed: A step failed; the table says which.
+    """
+    shutil.rmtree(FOLDER, ignore_errors=True)
+    (FOLDER / "talk").mkdir(parents=True)
+    with heading(f"Install {zip_file.name} in Blender"):
+        command = ["blender", "--command", "extension", "install-file", "-r", "user_default", "-e"]
+        run(blender([*command, zip_file]), timeout=180)
+    with heading("Play the scenario in Blender's window"), x_server() as display:
+        code = play(display, words)
+    steps = json.loads((FOLDER / "talk" / "steps.json").read_text(encoding="utf-8"))
+    steps += closing_steps(code)
+    print(table(steps))
+    print(f"pictures: {FOLDER.relative_to(ROOT)}/*.png")
+    bad = [step["name"] for step in steps if step["state"] not in {"ok", "skipped"}]
+    if bad:
+        raise Failed(f"in the window: {', '.join(bad)}")
+
+
+def blender(words: list[object], **variables: str) -> list[str]:
+    """The command that runs Blender in the folder, with a profile of our own."""
+    profile = str(FOLDER / "profile")
+    return debian.inside(words, shared=[ROOT], BLENDER_USER_RESOURCES=profile, **variables)
+
+
+@contextlib.contextmanager
+def x_server() -> Iterator[str]:
+    """A virtual screen; yields the name of its display."""
+    size = "x".join(map(str, SCREEN))
+    command = ["Xvfb", "-displayfd", "1", "-screen", "0", f"{size}x24", "-nolisten", "tcp"]
+    process = subprocess.Popen(
+        debian.inside(command), stdout=subprocess.PIPE, text=True, start_new_session=True
+    )
+    try:
+        number = process.stdout.readline().strip()
+        if not number:
+            raise Failed("the X server did not start")
+        yield f":{number}"
+    finally:
+        stop(process)
+
+
+def play(display: str, chosen: Sequence[str]) -> int | None:
+    """Run Blender with the scenario, do what it asks; its exit code, or None if it had to be stopped."""
+    from_below = SCREEN[1] - WINDOW[1]  # as Blender counts
+    geometry = ["--window-geometry", 0, from_below, *WINDOW]
+    talk = FOLDER / "talk"
+    words = ["blender", *geometry, "--python", SCRIPTS / "gui_inside.py", "--", talk, *chosen]
+    with (FOLDER / "blender.log").open("w") as log:
+        process = subprocess.Popen(
+            blender(words, DISPLAY=display, LIBGL_ALWAYS_SOFTWARE="1"),
+            stdout=log,
+            stderr=subprocess.STDOUT,
+            cwd=ROOT,
+            start_new_session=True,
+        )
+        try:
+            return serve(process, display, time.monotonic() + SECONDS)
+        finally:
+            stop(process)
+
+
+def serve(process: subprocess.Popen, display: str, until: float) -> int | None:
+    """Do what Blender asks for, in order, until it ends or the time is up."""
+    requests = FOLDER / "talk" / "requests.jsonl"
+    done = 0
+    while time.monotonic() < until:
+        code = process.poll()
+        text = requests.read_text(encoding="utf-8") if requests.exists() else ""
+        for line in text.split("\n")[done:-1]:
+            act(json.loads(line), display)
+            done += 1
+            (requests.parent / f"done-{done}").touch()
+        if code is not None:
+            return code
+        time.sleep(0.05)
+    return None
+
+
+def act(request: dict, display: str) -> None:
+    """Do one thing that Blender asked for: a key, a text, a move of the mouse, a photograph."""
+    for command in commands(request):
+        words = debian.inside(command, shared=[FOLDER], DISPLAY=display)
+        run(words, timeout=ACTION_SECONDS)
+
+
+def commands(request: dict) -> list[list[object]]:
+    """The programs that do what a request asks for."""
+    kind = request["do"]
+    if kind == "key":
+        return [["xdotool", "key", "--clearmodifiers", request["key"]]]
+    if kind == "type":
+        return [["xdotool", "type", "--delay", 40, request["text"]]]
+    if kind == "move":
+        return [["xdotool", "mousemove", *request["to"]]]
+    if kind in {"press", "release"}:
+        return [["xdotool", "mousedown" if kind == "press" else "mouseup", request["button"]]]
+    if kind == "resize":
+        search = ["xdotool", "search", "--onlyvisible", "--class", "Blender"]
+        return [[*search, "windowsize", *(request["size"] or WINDOW)]]
+    if kind == "photo":
+        left, top, width, height = request["part"] or (0, 0, *WINDOW)
+        part = ["-crop", f"{width}x{height}+{left}+{top}", "+repage"]
+        return [["import", "-window", "root", *part, FOLDER / f"{request['name']}.png"]]
+    raise ValueError(f"{kind!r} is nothing that can be done")
+
+
+def closing_steps(code: int | None) -> list[dict]:
+    """What is judged from outside: how Blender ended, and what its console says."""
+    ends = {0: ("ok", "exit code 0"), None: ("failed", f"stopped after {SECONDS} s")}
+    state, detail = ends.get(code, ("failed", f"exit code {code}"))
+    text = (FOLDER / "blender.log").read_text(encoding="utf-8", errors="replace")
+    told = [line for line in text.splitlines() if is_complaint(line)]
+    return [
+        {"name": "quit", "state": state, "detail": detail, "seconds": 0.0},
+        {
+            "name": "console",
+            "state": "failed" if told else "ok",
+            "detail": told[0] if told else "no error, no warning",
+            "seconds": 0.0,
+        },
+    ]
+
+
+def is_complaint(line: str) -> bool:
+    """Whether a line of Blender's console tells of something wrong."""
+    words = ("Traceback", "Error", "error:", "Warning", "WARN")
+    return any(word in line for word in words) and not any(word in line for word in HARMLESS)
+
+
+def table(steps: list[dict]) -> str:
+    """The steps as lines of text: name, state, seconds, detail."""
+    wide = max(len(step["name"]) for step in steps)
+    return "\n".join(
+        f"  {step['name']:{wide}}  {step['state']:7}  {step['seconds']:5.1f} s  {step['detail']}"
+        for step in steps
+    )

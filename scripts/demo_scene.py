@@ -29,7 +29,7 @@ GATHERED = 0.54
 PLEAT = 0.04
 """m; every other ring's point goes forward by this, the rest back."""
 STILL = {"frame": 58, "width": 560, "height": 700, "samples": 14}
-VIDEO = {"width": 288, "height": 360, "samples": 4}
+VIDEO = {"width": 256, "height": 320, "samples": 3}
 
 
 def bake(folder: Path) -> None:

@@ -22,8 +22,8 @@ def test_an_unsaved_file_keeps_them_in_the_session():
 def test_the_files_of_a_bake_lie_together():
     files = cache_paths.files_of("/c/a.b.pc2")
     assert files == (
-        "/c/a.b.pc2", "/c/a.b.json", "/c/a.b.checkpoint", "/c/a.b.strain", "/c/a.b.tension", "/c/a.b.contact",
-        "/c/a.b.intersection",
+        "/c/a.b.pc2", "/c/a.b.json", "/c/a.b.checkpoint", "/c/a.b.strain", "/c/a.b.tension",
+        "/c/a.b.contact", "/c/a.b.intersection",
     )  # fmt: skip
     assert files.previous.pc2 == "/c/a.b.previous.pc2"
 

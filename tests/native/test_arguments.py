@@ -66,10 +66,11 @@ def test_what_is_no_array_is_a_type_error(simulation, out):
         simulation.read_positions(0, out)
 
 
-def test_strain_takes_float32_only(simulation):
+def test_strain_and_tension_take_float32_only(simulation):
     for bad in (np.zeros(36), np.zeros(35, np.float32), np.zeros((36, 1), np.float32)):
-        with refused("out"):
-            simulation.read_strain(0, bad)
+        for read in (simulation.read_strain, simulation.read_tension):
+            with refused("out"):
+                read(0, bad)
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf, 1e30])

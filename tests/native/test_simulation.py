@@ -235,6 +235,25 @@ def test_springs_and_strain_are_read_with_their_kinds_and_lengths(simulation, sh
     assert max(strain) == pytest.approx(simulation.certificate()["max_strain"], rel=1e-5)
 
 
+def test_tension_is_what_the_springs_pull_with(simulation):
+    simulation.advance()
+    simulation.advance()
+    tension, positions = np.empty(36, np.float32), np.empty((36, 3))
+    simulation.read_tension(0, tension)
+    simulation.read_positions(0, positions)
+    ends, kinds, lengths, stiffness, _ = simulation.read_springs(0)
+    ends = np.frombuffer(ends, np.int32).reshape(-1, 2)
+    spans = positions[ends[:, 0]] - positions[ends[:, 1]]
+    longer = np.linalg.norm(spans, axis=1) - np.frombuffer(lengths)
+    pulls = np.frombuffer(stiffness) * longer * (np.frombuffer(kinds, np.uint8) < 2)
+    expected = np.zeros(36)
+    for pull, pair in zip(pulls, ends, strict=True):
+        expected[pair] = np.maximum(expected[pair], pull)
+    assert longer.max() < 0.05 * 0.2, "no edge is at its limit, which would pull beside its spring"
+    assert expected.max() > 1e-3
+    assert tension == pytest.approx(expected, rel=1e-5, abs=1e-9)
+
+
 def test_several_cloths_are_told_apart_by_their_number(make_sheet):
     small, large = make_sheet(3), make_sheet(5)
     scene = {

@@ -39,11 +39,14 @@ def ensure() -> None:
     with heading("Install Blender 5.2 for the Python of the Debian 13 folder"):
         # Our own pip does it, with its own settings: the folder has none.
         words = [venv_program(VENV, "python"), "-m", "pip", "install", "--quiet", "--no-deps"]
-        words += ["--target", library(), "--upgrade", "--only-binary", ":all:"]
+        words += ["--target", library(), "--upgrade", "--no-compile", "--only-binary", ":all:"]
         words += ["--python-version", "3.13", "--ignore-requires-python"]
         for kind in ("manylinux_2_28", "manylinux_2_27", "manylinux_2_17", "manylinux2014"):
             words += ["--platform", f"{kind}_x86_64"]
         run([*words, "--requirement", REQUIREMENTS], timeout=1800)
+        # Compiled for the folder's Python: each test starts a Blender anew.
+        compiling = ["/usr/bin/python3", "-m", "compileall", "-q", "-j", "0", library()]
+        run(debian.inside(compiling, shared=[library()]), timeout=1800)
         stamp.write_text(wanted, encoding="utf-8")
 
 

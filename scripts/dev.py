@@ -46,10 +46,10 @@ def bench(arguments: list[str]) -> None:
 
 
 def package(arguments: list[str]) -> None:
-    """the extension as out/package/*.zip, one per platform, checked and installed once (--here: this machine's alone)"""
+    """the extension as out/package/*.zip, one per platform, checked (--here or names: only these; others need root)"""
     import package as packaging
 
-    packaging.package(only_here="--here" in arguments)
+    packaging.package(arguments)
 
 
 def gui(arguments: list[str]) -> None:
@@ -58,7 +58,7 @@ def gui(arguments: list[str]) -> None:
     import package as packaging
 
     window.require()
-    window.gui(packaging.package(only_here=True), arguments)
+    window.gui(packaging.package(["--here"]), arguments)
 
 
 def blender52(arguments: list[str]) -> None:

@@ -11,6 +11,7 @@ import json
 import shutil
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import platforms
@@ -36,16 +37,20 @@ FOLDER = OUT / "package"
 ZIP_MAX_BYTES = 8_000_000
 
 
-def package(only_here: bool = False) -> Path:
-    """Make and check out/package/*.zip, for every platform or for this machine's alone; this machine's zip.
+def package(names: Sequence[str] = ()) -> Path | None:
+    """Make and check out/package/*.zip; this machine's zip, if it is among them.
+
+    Args:
+        names: Platforms, "--here" for this machine's; all of them if there are none.
 
     Raises:
         Failed: A platform could not be done, or its zip is not as it must be; the others are made all the same.
     """
+    wanted = platforms.chosen(names)
     require_rust()
     with exclusive():
         ensure_venv(VENV, "requirements.txt", "requirements-package.txt")
-    wheels, faults = make_wheels([platforms.here()] if only_here else [*platforms.PLATFORMS])
+    wheels, faults = make_wheels(wanted)
     staging = FOLDER / "staging"
     stage(wheels, staging)
     with heading("Build and validate the zips with Blender's tool"):

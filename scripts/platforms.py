@@ -10,6 +10,7 @@ import os
 import platform as machine
 import shutil
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -81,6 +82,20 @@ def here() -> Platform:
     if not found:
         raise Failed(f"the extension is not made for {sys.platform} on {machine.machine()}")
     return found[0]
+
+
+def chosen(names: Sequence[str]) -> list[Platform]:
+    """The named platforms, or all of them.
+
+    Raises:
+        Failed: A name is none of ours.
+    """
+    known = {platform.name: platform for platform in PLATFORMS}
+    names = [here().name if name == "--here" else name for name in names]
+    strange = [name for name in names if name not in known]
+    if strange:
+        raise Failed(f"no platform {strange[0]!r}: accepted are --here, {', '.join(known)}")
+    return [known[name] for name in names or known]
 
 
 def wheel_for(platform: Platform) -> Path:

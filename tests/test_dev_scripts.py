@@ -159,6 +159,16 @@ def library(platform, needs=None, oldest=None, exports=(wheel_check.ENTRY,)):
     )
 
 
+def test_platforms_are_chosen_by_name():
+    assert platforms.chosen(()) == [*platforms.PLATFORMS]
+    assert [p.name for p in platforms.chosen(["macos-x64", "--here"])] == [
+        "macos-x64",
+        platforms.here().name,
+    ]
+    with pytest.raises(environment.Failed, match="no platform 'amiga': accepted are --here, linux"):
+        platforms.chosen(["amiga"])
+
+
 @pytest.mark.parametrize("platform", GOOD)
 def test_a_good_library_is_accepted_on_its_own_platform_only(platform):
     assert [p.name for p in platforms.PLATFORMS if p.name == platform] == [platform]

@@ -10,6 +10,7 @@ from bpy.app.handlers import persistent
 
 from .bridge import (
     certificate,
+    cloth,
     findings,
     live,
     overlay_view,
@@ -51,6 +52,9 @@ def animation_playback_pre(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgrap
 def save_pre(path: str, *_: Any) -> None:
     """Rest shapes and caches in place before the file is written."""
     if registry.all_cloths():
+        for obj in registry.local_cloths():
+            if obj.override_library is None:
+                cloth.store_groups(obj)
         saving.remember_folder(path)
         saving.before_save(path)
 

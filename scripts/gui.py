@@ -21,7 +21,7 @@ from environment import OUT, ROOT, SCRIPTS, Failed, heading, run, stop
 
 PACKAGES = ("blender", "xvfb", "xdotool", "imagemagick", "libgl1-mesa-dri")
 FOLDER = OUT / "gui"
-SCREEN = (1920, 2800)
+SCREEN = (1920, 3700)
 """Tall enough for every panel of the Physics tab at once."""
 WINDOW = (1280, 960)
 SECONDS = 600

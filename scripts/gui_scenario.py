@@ -20,7 +20,7 @@ MODULE = "bl_ext.user_default.boucle"
 ANSWER_SECONDS = 0.1
 """A window that takes longer to answer feels stuck. What drawing takes comes on top, twice of what it takes at rest: here
 software draws, on the cores that simulate."""
-TALL = (1920, 2700)
+TALL = (1920, 3600)
 BAKE_COLUMNS, BAKE_END = 64, 5000
 """A bake that no machine ends before Esc."""
 FRAMES_MORE, FRAMES_MORE_SECONDS = 10, 240
@@ -98,11 +98,10 @@ def key(name: str) -> dict:
     return {"do": "key", "key": name}
 
 
-def draw(seconds: float = 20.0) -> Step:
-    """Wait until the viewport and all else was drawn anew, and a moment more for the screen to show it."""
+def draw(kind: type = bpy.types.SpaceView3D, seconds: float = 20.0) -> Step:
+    """Wait until the window was drawn anew, as an editor of this kind tells, and a moment more for the screen to show it."""
     drawn: list[bool] = []
-    view = bpy.types.SpaceView3D
-    handler = view.draw_handler_add(drawn.append, (True,), "WINDOW", "POST_PIXEL")
+    handler = kind.draw_handler_add(drawn.append, (True,), "WINDOW", "POST_PIXEL")
     until = time.monotonic() + seconds
     try:
         while len(drawn) < 2:
@@ -111,12 +110,12 @@ def draw(seconds: float = 20.0) -> Step:
                 each.tag_redraw()
             yield 0.1
     finally:
-        view.draw_handler_remove(handler, "WINDOW")
+        kind.draw_handler_remove(handler, "WINDOW")
     yield 0.5
 
 
 def answers(seconds: float = 5.0) -> Step:
-    """Measure for a while how a window that is always drawn anew answers; its viewport, which software draws slowly, is away."""
+    """Measure for a while how a window that is always drawn anew answers; without the viewport, which software draws slowly."""
     view = area("VIEW_3D")
     view.type = "CONSOLE"
     yield 1.0
@@ -134,7 +133,7 @@ def answers(seconds: float = 5.0) -> Step:
 
 def photo(name: str, part: bpy.types.Area | None = None) -> Step:
     """Photograph the window or one area, after it was drawn anew."""
-    yield from draw()
+    yield from draw() if part is None else draw(type(part.spaces.active))
     box = None
     if part is not None:
         left, top = on_screen(part.x, part.y + part.height)
@@ -192,22 +191,30 @@ def add_from_the_menu() -> Step:
 
 
 def open_every_panel() -> Step:
-    """The Physics tab with each panel open, in a window that is tall enough."""
+    """The Physics tab with each panel open."""
     panels = panel_classes()
     for kind in reversed(panels):
         bpy.utils.unregister_class(kind)
     for kind in panels:  # all of them, so that their order stays
         kind.bl_options = set(getattr(kind, "bl_options", ())) - {"DEFAULT_CLOSED"}
         bpy.utils.register_class(kind)
-    area("PROPERTIES").spaces[0].context = "PHYSICS"
+    yield from photo_of_panels("panels")
+    yield from photo("physics_tab")
+    return f"{len(panels)} panels"
+
+
+def photo_of_panels(name: str) -> Step:
+    """Photograph the whole Physics tab, in a window that is tall enough for the moment."""
+    view, properties = area("VIEW_3D"), area("PROPERTIES")
+    properties.spaces.active.context = "PHYSICS"
+    view.type = "CONSOLE"  # software draws a large viewport slowly
     yield {"do": "resize", "size": TALL}
     yield 2.0
     assert window().height == TALL[1], f"the window has a height of {window().height}"
-    yield from photo("panels", area("PROPERTIES"))
+    yield from photo(name, properties)
     yield {"do": "resize", "size": None}
-    yield 2.0
-    yield from photo("physics_tab")
-    return f"{len(panels)} panels"
+    view.type = "VIEW_3D"
+    yield 1.0
 
 
 def panel_classes() -> list[type]:
@@ -242,6 +249,7 @@ def bake_and_stop_with_escape() -> Step:
     cloth().boucle.frame_end = BAKE_END
     bpy.context.scene.frame_set(1)
     with in_view():
+        bpy.ops.view3d.view_axis(type="FRONT")
         bpy.ops.view3d.view_all(center=True)
     yield over_view()
     at_rest, said_at_rest = yield from answers()
@@ -285,6 +293,7 @@ def resume_to_the_end() -> Step:
     yield 0.5
     assert sag(cloth()) > 0.005, f"the baked cloth hangs {sag(cloth())} m lower than at rest"
     yield from photo("baked")
+    yield from photo_of_panels("panels_baked")
     return status
 
 

@@ -184,8 +184,9 @@ def test_what_blender_has_not_is_told(wrong, complaint):
     assert wheel_check.complaints(wrong, wrong.platform)[0].startswith(complaint)
 
 
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads Linux libraries")
 def test_a_wheel_of_another_name_is_refused(tmp_path):
-    compiled = next(Path(boucle_core.__file__).parent.glob("boucle_core*"))
+    compiled = next(Path(boucle_core.__file__).parent.glob("*.so"))
     wheel = tmp_path / "boucle_core-9.9.9-cp311-cp311-linux_x86_64.whl"
     with zipfile.ZipFile(wheel, "w") as archive:
         archive.write(compiled, "boucle_core/boucle_core.abi3.so")

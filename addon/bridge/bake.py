@@ -23,6 +23,7 @@ from . import (
     colliders,
     fields,
     live,
+    pins,
     preflight,
     registry,
     runtime,
@@ -127,12 +128,13 @@ class Bake:
         solver = build.result()
         self._interrupter = solver.interrupter()
         self.stores = self._make_stores(description, records, solver)
-        is_pinned = [simulation.is_pinned(description, cloth) for cloth in range(len(cloths))]
+        counts = [record["vertices"] for record in records]
+        held = [pins.Pins(description, cloth, count) for cloth, count in enumerate(counts)]
 
         def moment_at(frame: int) -> Moment:
             if frame < self._began[1]:
                 self._began = (time.monotonic(), frame)
-            return self._moment(frame, is_pinned, met, pushing)
+            return self._moment(frame, held, met, pushing)
 
         try:
             yield from core_bake.bake(
@@ -239,16 +241,16 @@ class Bake:
         return rows
 
     def _moment(
-        self, frame: int, is_pinned: Sequence[bool], met: colliders.Colliders, pushing: Fields
+        self, frame: int, held: Sequence[pins.Pins], met: colliders.Colliders, pushing: Fields
     ) -> Moment:
         self._go_to(frame)
         cloths = self._objects()
+        depsgraphs = [self._depsgraph_of(obj) for obj in cloths]
         poses = [
-            sampling.pose(obj, self._depsgraph_of(obj), pinned)
-            for obj, pinned in zip(cloths, is_pinned, strict=True)
+            sampling.pose(obj, depsgraph, own)
+            for obj, depsgraph, own in zip(cloths, depsgraphs, held, strict=True)
         ]
-        depsgraph = self._depsgraph_of(cloths[0])
-        return Moment(poses, met.targets(depsgraph), pushing.sample(depsgraph))
+        return Moment(poses, met.targets(depsgraphs[0]), pushing.sample(depsgraphs[0]))
 
     def _attach(self) -> None:
         """Play what is there, if it is the objects' own caches; a folder elsewhere is left alone."""

@@ -13,7 +13,7 @@ from ..core import cache_paths, drift, pc2, report
 from ..core.cache_paths import CacheFiles
 from ..core.progress import size
 from ..core.refusal import Refusal, cannot_write
-from . import fields, registry, runtime, settings, shape, slot
+from . import fields, registry, runtime, settings, slot
 
 
 def absolute(obj: bpy.types.Object, path: str) -> str:
@@ -171,12 +171,7 @@ def _own_drift(
         description = settings.describe(obj, scene, with_groups=in_full)
     except Refusal as refusal:
         return [str(refusal)]
-    pushing = fields.record(obj, scene)
-    if in_full:
-        now = settings.record(obj, description, pushing)
-    else:
-        description = shape.steady(obj, description)
-        now = drift.record(description, len(obj.data.vertices), "", pushing)
+    now = settings.record(obj, description, fields.record(obj, scene), with_faces=in_full)
     return drift.differences(then, now)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import Any
 
@@ -39,7 +40,7 @@ def copy(obj: bpy.types.Object) -> tuple[str, bool]:
 
 
 def _carry(settings: bpy.types.PropertyGroup, row: blender_cloth.Row, reading: Reading) -> bool:
-    """Set one property; False if something that is used has no place here."""
+    """Set one property; False if something that is used has no place here, or a number no room in its range."""
     *groups, name = row.target.split(".")
     for group in groups:
         settings = getattr(settings, group, None)
@@ -52,7 +53,8 @@ def _carry(settings: bpy.types.PropertyGroup, row: blender_cloth.Row, reading: R
         setattr(settings, name, value)
     except (AttributeError, TypeError, ValueError):  # a property of this name, but of another kind
         return not row.is_used(reading)
-    return True
+    kept = getattr(settings, name)
+    return not isinstance(value, float) or math.isclose(kept, value, rel_tol=1e-5, abs_tol=1e-12)
 
 
 def _read(obj: bpy.types.Object, modifier: bpy.types.ClothModifier) -> Reading:

@@ -35,6 +35,9 @@ class Display(Protocol):
     def is_shown(self, obj: bpy.types.Object, frames: LiveFrames) -> bool:
         """Whether the object looks as `show` left it."""
 
+    def begin_again(self, obj: bpy.types.Object) -> None:
+        """Forget the frames shown so far: others take their place."""
+
     def hide(self, obj: bpy.types.Object) -> None:
         """Take the frame away, so that the file can be saved; `show` brings it back."""
 
@@ -65,6 +68,9 @@ class Direct:
         """Whether nobody else has moved the vertices since."""
         present = memoryview(mesh_arrays.read_positions(obj.data)).cast("B")
         return present == memoryview(frames.nearest(self._frame).positions).cast("B")
+
+    def begin_again(self, _obj: bpy.types.Object) -> None:
+        """The mesh holds one frame only."""
 
     def hide(self, obj: bpy.types.Object) -> None:
         """Put the rest shape back."""
@@ -114,6 +120,11 @@ class TemporaryFile:
         for positions in missing:
             self._writer.append(positions)
         return bool(missing)
+
+    def begin_again(self, obj: bpy.types.Object) -> None:
+        """Make the file anew with the next frame shown."""
+        self.forget()
+        self.hide(obj)
 
     def hide(self, obj: bpy.types.Object) -> None:
         """Name no temporary file."""

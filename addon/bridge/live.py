@@ -12,63 +12,27 @@ after it at once has the pose of that frame as the rest pose.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
-
 import bpy
 
 from .. import native
-from ..core import drift, points, quantity, scene_json, settle
-from ..core.bake import Moment, push
-from ..core.live_frames import Action, Frame, LiveFrames
-from ..core.points import Points
+from ..core import points
+from ..core.live_frames import Action, Frame
 from ..core.progress import size
 from ..core.quantity import Numbers
 from ..core.refusal import Refusal, sentence_of
-from . import (
-    cache,
-    colliders,
-    display,
-    fields,
-    registry,
-    rest,
-    runtime,
-    sampling,
-    settings,
-    shape,
-    simulation,
-    vertex_attributes,
+from . import cache, display, registry, rest, runtime, sampling, vertex_attributes
+from .session import (
+    Session,
+    basis_of,
+    build,
+    moment_of,
+    read_numbers,
+    read_positions,
+    settings_digest,
 )
-from . import slot as slots
-from .colliders import Colliders
-from .fields import Fields
 
 EDITING_MODES = frozenset({"EDIT", "SCULPT", "WEIGHT_PAINT"})
 """Modes in which the artist works on the rest shape or on the pins."""
-
-
-@dataclass
-class Session:
-    """One cloth in motion."""
-
-    uid: int
-    solver: Any
-    """None after a fault: the kept frames can still be shown."""
-    frames: LiveFrames
-    is_pinned: bool
-    colliders: Colliders
-    fields: Fields
-    display: display.Display
-    basis: tuple[object, ...]
-    """What must not change while the session lives; looked at at every frame."""
-    settings: str
-    """A digest of the settings; looked at after undo, which changes them without a word."""
-    place: points.Affine
-    """The object in its parent's space, when the last frame was shown."""
-    waits: str = ""
-    """Why the cloth does not move on at the present frame; empty if it does."""
-    refusal: str = ""
-    """Why the frame after the last could not be simulated when the scene stood there."""
 
 
 _sessions: dict[int, Session] = {}
@@ -119,7 +83,7 @@ def read_last(obj: bpy.types.Object) -> None:
     if session is None or session.solver is None or runtime.busy:
         return
     try:
-        session.frames.tell(_read_numbers(session.solver, obj))
+        session.frames.tell(read_numbers(session.solver, obj))
     except native.FAILURES as error:
         session.solver = None
         _say(obj, sentence_of(error))
@@ -134,7 +98,7 @@ def _come_to_frame(
 ) -> None:
     if not sampling.is_evaluated(obj, depsgraph):
         return
-    session = _valid_session(obj, scene)
+    session = valid_session(obj, scene)
     frame = scene.frame_current
     if session is None:
         if frame not in (obj.boucle.frame_start, obj.boucle.frame_start + 1):
@@ -157,7 +121,7 @@ def begin(
     """Start a session with the present pose as the rest pose; None, and a message, if it cannot be."""
     runtime.messages.pop(obj.session_uid, None)
     try:
-        session = _build(obj, scene, depsgraph)
+        session = build(obj, scene, depsgraph)
     except native.FAILURES as error:
         _say(obj, sentence_of(error))
         return None
@@ -165,78 +129,10 @@ def begin(
     return session
 
 
-def _build(
-    obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph
-) -> Session:
-    if not runtime.rendering:
-        slots.ensure(obj)
-    description = settings.describe(obj, scene, with_groups=True)
-    is_direct = display.may_write(obj) and (not runtime.rendering or rest.is_displaced(obj.data))
-    local = rest.positions(obj.data) if is_direct else sampling.targets(obj, depsgraph)
-    matrix = sampling.object_matrix(obj, depsgraph)
-    to_object = sampling.inverse(obj, matrix)
-    met = Colliders([obj], scene, depsgraph)
-    world = points.transform(local, matrix, "d")
-    rests = [shape.rest(obj, matrix)]
-    make = simulation.maker(
-        description, [simulation.mesh(obj, world)], colliders=met.arrays, rests=rests
-    )
-    solver = make()
-    pushing = Fields(obj, scene)
-    push(solver, pushing.sample(depsgraph))
-    limit = memory_limit()
-    if settle.run(solver, scene_json.settling(description), [len(obj.data.vertices)]):
-        local = _read(solver, to_object, len(obj.data.vertices))
-    first = Frame(local, solver.certificate(), _read_numbers(solver, obj))
-    shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
-    return Session(
-        uid=obj.session_uid,
-        solver=solver,
-        frames=LiveFrames(obj.boucle.frame_start, first, limit),
-        is_pinned=simulation.is_pinned(description, 0),
-        colliders=met,
-        fields=pushing,
-        display=shown,
-        basis=_basis(obj, scene),
-        settings=_settings_digest(obj, scene),
-        place=points.affine(obj.matrix_local),
-    )
-
-
-def memory_limit() -> int:
-    """Bytes that one cloth's live frames may take."""
-    addon = bpy.context.preferences.addons.get(__package__.rpartition(".")[0])
-    return addon.preferences.live_memory * 1_000_000 if addon else 4_000_000_000
-
-
-def _basis(obj: bpy.types.Object, scene: bpy.types.Scene) -> tuple[object, ...]:
-    mesh = obj.data
-    return (
-        mesh.session_uid,
-        len(mesh.vertices),
-        len(mesh.loops),
-        obj.boucle.frame_start,
-        settings.world(scene),
-        display.may_write(obj),
-        colliders.signature(obj, scene),
-        fields.signature(obj, scene),
-    )
-
-
-def _settings_digest(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
-    """A digest of the settings, without the vertices of groups; empty if they contradict each other."""
-    try:
-        description = settings.describe(obj, scene, with_groups=False)
-    except Refusal:
-        return ""
-    description = shape.steady(obj, description)
-    return drift.whole_digest(drift.record(description, 0, "", fields.record(obj, scene)))
-
-
-def _valid_session(obj: bpy.types.Object, scene: bpy.types.Scene) -> Session | None:
+def valid_session(obj: bpy.types.Object, scene: bpy.types.Scene) -> Session | None:
     """The session, dropped if what it stands on has changed; a left-over frame gives way to the rest shape."""
     session = session_of(obj)
-    if session is not None and session.basis != _basis(obj, scene):
+    if session is not None and session.basis != basis_of(obj, scene):
         drop(obj)
         session = None
     if session is None and rest.is_displaced(obj.data) and not runtime.rendering:
@@ -248,37 +144,21 @@ def _step(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgrap
     if session.solver is None:
         return
     try:
-        targets = session.colliders.targets(depsgraph)
-        forces = session.fields.sample(depsgraph)
-        pose = sampling.pose(obj, depsgraph, session.is_pinned)
+        moment = moment_of(session, obj, depsgraph)
     except Refusal as refusal:
         session.waits = session.refusal = str(refusal)
         return
     session.refusal = ""
     try:
-        Moment([pose], targets, forces).aim(session.solver)
+        moment.aim(session.solver)
         certificate = session.solver.advance()
-        positions = _read(session.solver, pose.to_object, len(obj.data.vertices))
-        session.frames.add(Frame(positions, certificate, _read_numbers(session.solver, obj)))
+        positions = read_positions(
+            session.solver, moment.poses[0].to_object, len(obj.data.vertices)
+        )
+        session.frames.add(Frame(positions, certificate, read_numbers(session.solver, obj)))
     except native.FAILURES as error:
         session.solver = None
         _say(obj, f"{sentence_of(error)}; frames up to {session.frames.last} are kept")
-
-
-def _read(solver: Any, to_object: points.Affine, vertex_count: int) -> Points:
-    if to_object == points.IDENTITY:
-        out = points.empty("f", 3 * vertex_count)
-        solver.read_positions(0, out)
-        return out
-    world = points.empty("d", 3 * vertex_count)
-    solver.read_positions(0, world)
-    return points.transform(world, to_object, "f")
-
-
-def _read_numbers(solver: Any, obj: bpy.types.Object) -> Numbers:
-    out = quantity.empty(vertex_attributes.wanted(obj), len(obj.data.vertices))
-    quantity.read(solver, 0, out)
-    return out
 
 
 def _explain(session: Session, action: Action) -> str:
@@ -337,7 +217,7 @@ def show_anew(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
         return
     is_direct = display.may_write(obj)
     session.display = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
-    session.basis = _basis(obj, scene)
+    session.basis = basis_of(obj, scene)
     session.display.show(obj, session.frames, scene.frame_current)
 
 
@@ -347,10 +227,10 @@ def revalidate(scene: bpy.types.Scene) -> None:
         obj = registry.by_uid(uid)
         if obj is None or not registry.is_cloth(obj):
             _sessions.pop(uid).display.forget()
-        elif obj.mode in EDITING_MODES or _sessions[uid].settings != _settings_digest(obj, scene):
+        elif obj.mode in EDITING_MODES or _sessions[uid].settings != settings_digest(obj, scene):
             drop(obj)
     for obj in registry.cloths_of(scene):
-        session = _valid_session(obj, scene)
+        session = valid_session(obj, scene)
         if session is not None and _is_live(obj):
             session.display.show(obj, session.frames, scene.frame_current)
         show_attributes(obj, scene)

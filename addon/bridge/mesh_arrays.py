@@ -60,16 +60,21 @@ def edges(mesh: bpy.types.Mesh) -> Points:
 
 def group_vertices(obj: bpy.types.Object, name: str, threshold: float) -> Sequence[int]:
     """The vertices whose weight in a vertex group is at least threshold, in order."""
+    return list(group_weights(obj, name, threshold))
+
+
+def group_weights(obj: bpy.types.Object, name: str, threshold: float) -> dict[int, float]:
+    """The same vertices and their weights."""
     group = obj.vertex_groups.get(name)
     if group is None:
-        return []
+        return {}
     index = group.index
-    return [
-        vertex.index
+    return {
+        vertex.index: element.weight
         for vertex in obj.data.vertices
         for element in vertex.groups
         if element.group == index and element.weight >= threshold
-    ]
+    }
 
 
 def world_matrix(obj: Any) -> Affine:

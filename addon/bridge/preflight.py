@@ -27,7 +27,7 @@ from . import (
 SAMPLED_ONCE = (
     "stretch", "shear", "bend", "damping", "damping_stretch", "damping_shear", "damping_bend",
     "air_damping", "deformation_rate", "density", "mass_per_vertex", "wind_velocity",
-    "wind_coefficient", "wind_air_density", "thickness", "friction",
+    "wind_coefficient", "wind_air_density", "thickness", "friction", "pin_damping",
 )  # fmt: skip
 """Settings that may be animated in the file, of which the solver takes the first frame's value."""
 
@@ -101,17 +101,8 @@ def _stack_errors(obj: bpy.types.Object) -> Iterator[Problem]:
 
 def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
     group = obj.boucle.pin_group
-    if obj.vertex_groups.get(group) is not None:
-        whole = set(mesh_arrays.group_vertices(obj, group, 1.0))
-        soft = [v for v in mesh_arrays.group_vertices(obj, group, 1e-6) if v not in whole]
-        if soft:
-            yield Problem(
-                Severity.WARNING,
-                f'"{obj.name}": {len(soft)} vertices of "{group}" have a weight '
-                f"below 1: soft pins are not supported yet, from {settings.PIN_THRESHOLD} on a "
-                "vertex is held and below it is free",
-                soft,
-            )
+    if not group:
+        yield _warning(f'"{obj.name}": no Pin Group is set, so the cloth falls freely')
     yield from _loose_edges(obj)
     animated = [name for name in SAMPLED_ONCE if animation.moves(obj, f"boucle.{name}")]
     if animated:

@@ -7,7 +7,7 @@ import bpy
 from .. import native
 from ..core import drift, points, scene_json
 from ..core.refusal import Refusal, sentence_of
-from . import live, mesh_arrays, rest, settings, simulation
+from . import live, mesh_arrays, rest, runtime, settings, simulation
 
 LARGEST = 20_000
 """Vertices up to which a panel may build a solver while it draws (about 50 ms)."""
@@ -21,7 +21,7 @@ def describe(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
     fps = settings.world(scene).fps
     if settings.is_implicit(obj.boucle.integrator):
         return "Any time step is stable with this integrator"
-    if session is not None and session.solver is not None:
+    if session is not None and session.solver is not None and not runtime.busy:
         return _words(session.solver, fps)
     try:
         description = settings.describe(obj, scene, with_groups=False)

@@ -10,6 +10,7 @@ from ..core.bake import Pose
 from ..core.points import Affine, Points
 from ..core.refusal import Refusal
 from . import mesh_arrays, rest, shape, slot
+from .pins import Pins
 
 
 def is_evaluated(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> bool:
@@ -65,16 +66,16 @@ def targets(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Points:
     return mesh_arrays.read_vectors(attribute)[: 3 * count]
 
 
-def pose(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, with_pins: bool) -> Pose:
+def pose(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, held: Pins) -> Pose:
     """The pose of a cloth at the depsgraph's frame."""
     matrix = object_matrix(obj, depsgraph)
     to_object = inverse(obj, matrix)
     moves_rest = obj.boucle.use_dynamic_mesh
     world = None
-    if with_pins or moves_rest:
+    if held.are_there or moves_rest:
         world = points.transform(targets(obj, depsgraph), matrix, "d")
     now = shape.at_frame(obj, obj.evaluated_get(depsgraph), world)
-    return Pose(world if with_pins else None, to_object, now)
+    return Pose(world if held.are_there else None, to_object, now, held.change(obj, depsgraph))
 
 
 def refuse_other_count(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:

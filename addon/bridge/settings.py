@@ -10,11 +10,7 @@ import bpy
 from ..core import drift, scene_json
 from ..core.refusal import Refusal
 from ..core.scene_json import Groups, World
-from . import colliders, mesh_arrays, shape
-
-PIN_THRESHOLD = 0.5
-"""Soft pins are not supported yet: from this weight on a vertex is held, below it is free."""
-
+from . import animation, colliders, mesh_arrays, pins, shape
 
 _DATA = frozenset({"POINTER", "COLLECTION"})
 
@@ -52,16 +48,18 @@ def groups(obj: bpy.types.Object) -> Groups:
         Refusal: A group is named that the object does not have.
     """
     settings = obj.boucle
-    pins = _vertices(obj, "Pin Group", settings.pin_group, PIN_THRESHOLD)
-    wind = _vertices(obj, "Wind Group", settings.wind_group, ANY) if settings.use_wind else None
+    _require(obj, "Pin Group", settings.pin_group)
+    held = pins.painted(obj, settings.pin_group) if settings.pin_group else {}
+    wind = _vertices(obj, "Wind Group", settings.wind_group) if settings.use_wind else None
     not_self = not_objects = None
     if settings.self_collision:
         name = settings.self_collision_group
-        not_self = _vertices(obj, "Self Collision Vertex Group", name, ANY)
+        not_self = _vertices(obj, "Self Collision Vertex Group", name)
     if settings.object_collision:
         name = settings.collision_group
-        not_objects = _vertices(obj, "Object Collision Vertex Group", name, ANY)
-    return Groups(pins or [], wind, not_self or [], not_objects or [], shape.groups(obj))
+        not_objects = _vertices(obj, "Object Collision Vertex Group", name)
+    weights = list(held.values())
+    return Groups(list(held), wind, not_self or [], not_objects or [], shape.groups(obj), weights)
 
 
 def describe(
@@ -77,26 +75,41 @@ def describe(
     found = groups(obj) if with_groups else Groups([], None)
     met = [thing for thing in colliders.find(obj, scene) if thing not in others]
     things = [colliders.describe(thing) for thing in met]
-    return scene_json.describe(obj.name, values(obj), world(scene), found, things, bool(others))
+    given = values(obj)
+    if animation.moves(obj, "boucle.pin_stiffness"):
+        given.pop("pin_stiffness")  # told frame by frame
+    return scene_json.describe(obj.name, given, world(scene), found, things, bool(others))
 
 
 def record(
-    obj: bpy.types.Object, description: dict[str, Any], fields: dict[str, Any]
+    obj: bpy.types.Object,
+    description: dict[str, Any],
+    fields: dict[str, Any],
+    with_faces: bool = True,
 ) -> dict[str, Any]:
-    """What a bake with this description and these force fields remembers of its cloth."""
+    """What a bake with this description and these force fields remembers of its cloth.
+
+    The digest of its faces takes long and may be left out.
+    """
     mesh = obj.data
-    topology = mesh_arrays.topology(mesh).digest()
+    faces = mesh_arrays.topology(mesh).digest() if with_faces else ""
     description = shape.steady(obj, description)
-    return drift.record(description, len(mesh.vertices), topology, fields)
+    made = drift.record(description, len(mesh.vertices), faces, fields)
+    strength = pins.constant_strength(obj)
+    if strength < 1.0:
+        made["settings"]["cloth.pin_strength"] = strength
+    return made
 
 
-def _vertices(obj: bpy.types.Object, label: str, name: str, threshold: float) -> list[int] | None:
-    if not name:
-        return None
-    if obj.vertex_groups.get(name) is None:
+def _vertices(obj: bpy.types.Object, label: str, name: str) -> list[int] | None:
+    _require(obj, label, name)
+    return list(mesh_arrays.group_vertices(obj, name, ANY)) if name else None
+
+
+def _require(obj: bpy.types.Object, label: str, name: str) -> None:
+    if name and obj.vertex_groups.get(name) is None:
         known = ", ".join(f'"{group.name}"' for group in obj.vertex_groups) or "none"
         raise Refusal(
             f'"{obj.name}": {label} "{name}" is not a vertex group of the object '
             f"(it has {known}): choose one of them or clear the field"
         )
-    return list(mesh_arrays.group_vertices(obj, name, threshold))

@@ -38,8 +38,3 @@ def mesh(obj: bpy.types.Object, start_world: Points) -> Arrays:
     """The mesh of a cloth that starts from these positions (m, world space), float64, flat."""
     faces = mesh_arrays.topology(obj.data)
     return start_world, faces.starts, faces.corners
-
-
-def is_pinned(description: dict[str, Any], cloth: int) -> bool:
-    """Whether anything holds a cloth."""
-    return bool(description["cloth"][cloth].get("pins"))

@@ -29,6 +29,8 @@ class Simulation(Protocol):
     frame: int
 
     def set_pin_targets(self, cloth: int, targets: Points) -> None: ...
+    def set_pin_weights(self, cloth: int, weights: Points) -> None: ...
+    def set_pin_stiffness(self, cloth: int, stiffness: float) -> None: ...
     def set_collider_targets(self, collider: int, targets: Points) -> None: ...
     def set_gravity(self, gravity: tuple[float, float, float]) -> None: ...
     def set_fields(self, fields: str) -> None: ...
@@ -44,6 +46,15 @@ class Simulation(Protocol):
     def restore(self, checkpoint: bytes) -> None: ...
 
 
+class Hold(NamedTuple):
+    """How firmly pins are held from a frame on."""
+
+    weights: Points
+    """0 free to 1 hard, one for each vertex of the mesh."""
+    stiffness: float
+    """(N/m), of pins that hang together, at weight 1."""
+
+
 class Pose(NamedTuple):
     """What the scene says of a cloth at a frame: where its pins go (m, world space), world to object space, the shape."""
 
@@ -51,11 +62,16 @@ class Pose(NamedTuple):
     """For all vertices; None without pins."""
     to_object: Affine
     shape: Shape = Shape()
+    hold: Hold | None = None
+    """None if it is as before."""
 
     def aim(self, simulation: Simulation, cloth: int) -> None:
-        """Tell a simulation where the pins of a cloth go in the next frame, and what its shape is to be."""
+        """Tell a simulation where the pins of a cloth go in the next frame, how firmly, and what its shape is to be."""
         if self.targets is not None:
             simulation.set_pin_targets(cloth, self.targets)
+        if self.hold is not None:
+            simulation.set_pin_weights(cloth, self.hold.weights)
+            simulation.set_pin_stiffness(cloth, self.hold.stiffness)
         self.shape.aim(simulation, cloth)
 
 
@@ -69,18 +85,13 @@ class Moment(NamedTuple):
 
     def aim(self, simulation: Simulation) -> None:
         """Tell a simulation what goes where in the next frame, and what pushes."""
-        push(simulation, self.forces)
+        if self.forces is not None:
+            simulation.set_gravity(self.forces.gravity)
+            simulation.set_fields(self.forces.fields)
         for cloth, pose in enumerate(self.poses):
             pose.aim(simulation, cloth)
         for number, targets in enumerate(self.colliders):
             simulation.set_collider_targets(number, targets)
-
-
-def push(simulation: Simulation, forces: Forces | None) -> None:
-    """Tell a simulation what pushes from now on."""
-    if forces is not None:
-        simulation.set_gravity(forces.gravity)
-        simulation.set_fields(forces.fields)
 
 
 class Buffers(NamedTuple):
@@ -162,8 +173,8 @@ def bake(
     try:
         if not (resume and stores.resume(simulation)):
             moment = moment_at(plan.start)
-            push(simulation, moment.forces)
-            yield from _settle(simulation, stores, moment)
+            moment.aim(simulation)
+            yield from _settle(simulation, stores)
             stores.begin()
             begin = Step(plan.start, lambda: _read(simulation, simulation.certificate(), buffers))
             begin.run()
@@ -189,12 +200,10 @@ def bake(
             stores.close()
 
 
-def _settle(simulation: Simulation, stores: Stores, start: Moment) -> Iterator[Step]:
+def _settle(simulation: Simulation, stores: Stores) -> Iterator[Step]:
     """A step for every frame of settling; nothing on disk is touched before they are done."""
     counts = [store.plan.vertex_count for store in stores.each]
     settle = Settle(simulation, stores.plan.settling, counts)
-    if not settle.is_done:
-        start.aim(simulation)
     while not settle.is_done:
         step = Step(simulation.frame + 1, settle.advance)
         yield step

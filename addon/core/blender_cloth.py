@@ -1,7 +1,8 @@
 """What the settings of Blender's own Cloth modifier are in ours, row by row.
 
 Blender scales gravity by 0.001 and nothing else: its forces are kilonewtons (all of this measured in Blender: hanging strips
-to five digits, at any frame rate). With tension T, mean edge length e (m) and mass m at every vertex, a spring is as stiff as
+to five digits, at any frame rate; sheets under pressure to four). With tension T and mean edge length e (m) a spring is as
+stiff as
 
 ```text
 k = 1000 T / e        (N/m)
@@ -93,6 +94,11 @@ def bend_damping(reading: Reading) -> float:
     return FORCE * TIME * damping / 4.0 * _FOLD  # a hinge's is 1/4 c e² (N m s/rad)
 
 
+def pressure(reading: Reading) -> float:
+    """The pressure (N/m²) besides that of the volume: Blender's is in units of its scale, which is in kilopascals."""
+    return FORCE * reading.values["uniform_pressure_force"] * reading.values["pressure_factor"]
+
+
 def pin_stiffness(reading: Reading) -> float | None:
     """The stiffness (N/m) of a patch of soft pins together: Blender's is that of each vertex at weight 1."""
     stiffness = spring("pin_stiffness")(reading)
@@ -146,18 +152,18 @@ ROWS = (
     Row("speed", _as_it_is("time_scale"), "Speed Multiplier", _used("time_scale", 1.0)),
     Row("pin_group", _as_it_is("vertex_group_mass"), "Pin Group"),
     Row("pin_stiffness", pin_stiffness, "Pin Stiffness"),
-    Row("use_sewing", _as_it_is("use_sewing_springs"), "Sewing", _used("use_sewing_springs")),
-    Row("sewing_force", lambda r: FORCE * r.values["sewing_force_max"], "Max Sewing Force"),
-    Row("shrink", _as_it_is("shrink_min"), "Shrinking Factor", _used("shrink_min", 0.0)),
+    Row("use_sewing_springs", _as_it_is("use_sewing_springs"), "Sewing", _used("use_sewing_springs")),
+    Row("sewing_force_max", lambda r: FORCE * r.values["sewing_force_max"], "Max Sewing Force"),
+    Row("shrink_min", _as_it_is("shrink_min"), "Shrinking Factor", _used("shrink_min", 0.0)),
     Row("shrink_max", _as_it_is("shrink_max"), "Max Shrinking"),
     Row("shrink_group", _as_it_is("vertex_group_shrink"), "Shrinking Group", _group_differs("vertex_group_shrink")),
     Row("rest_shape_key", _as_it_is("rest_shape_key"), "Rest Shape Key", _used("rest_shape_key")),
+    Row("use_dynamic_mesh", _as_it_is("use_dynamic_mesh"), "Dynamic Mesh", _used("use_dynamic_mesh")),
     Row("use_pressure", _as_it_is("use_pressure"), "Pressure", _used("use_pressure")),
-    Row(
-        "pressure",
-        lambda r: FORCE * r.values["uniform_pressure_force"] * r.values["pressure_factor"],
-        "Pressure",
-    ),
+    Row("uniform_pressure_force", pressure, "Pressure"),
+    Row("pressure_factor", lambda r: FORCE * r.values["pressure_factor"], "Pressure Scale"),
+    Row("use_pressure_volume", _as_it_is("use_pressure_volume"), "Custom Volume"),
+    Row("target_volume", _as_it_is("target_volume"), "Target Volume"),
     Row("pressure_group", _as_it_is("vertex_group_pressure"), "Pressure Vertex Group"),
     Row("object_collision", _as_it_is("use_collision"), "Object Collisions"),
     Row("collision_group", _as_it_is("vertex_group_object_collisions"), "Vertex Group"),
@@ -171,8 +177,6 @@ ROWS = (
     # what has no counterpart
     Row("", _always(None), "Compression", lambda r: r.values["compression_stiffness"] != r.values["tension_stiffness"]),
     Row("", _always(None), "Internal Springs", _used("use_internal_springs")),
-    Row("", _always(None), "Dynamic Mesh", _used("use_dynamic_mesh")),
-    Row("", _always(None), "Custom Volume", lambda r: r.values["use_pressure"] and r.values["use_pressure_volume"]),
     Row("", _always(None), "Fluid Density", lambda r: r.values["use_pressure"] and r.values["fluid_density"] != 0.0),
     Row("", _always(None), "Structural Group", _group_differs("vertex_group_structural_stiffness")),
     Row("", _always(None), "Shear Group", _group_differs("vertex_group_shear_stiffness")),

@@ -31,6 +31,7 @@ _WORDS = {
 
 _VERTICES = {
     "pins.vertices": "pinned vertices",
+    "pins.weights": "weights of pins",
     "vertices": "vertices in the wind",
     "excluded_from_self": "vertices left out of self collision",
     "shrink.weights": "weights of the shrink group",

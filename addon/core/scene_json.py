@@ -17,6 +17,9 @@ IMPLICIT = frozenset({"bdf2", "implicit_euler"})
 QUALITIES = {"draft": 2e-2, "normal": 5e-3, "final": 1e-3}
 """Tolerances of the quality presets: of a swinging sheet 5e-3 keeps the amplitude within 1 % with 4 steps a frame."""
 
+PIN_DEFAULTS = {"pin_stiffness": 1000.0, "pin_damping": 1.0}
+"""What the solver takes where a scene says nothing: bakes from before there were soft pins stay as they are."""
+
 Values = Mapping[str, Any]
 """Property names of `object.boucle` and their values."""
 
@@ -36,6 +39,8 @@ class Groups(NamedTuple):
     excluded_from_self: Sequence[int] = ()
     excluded_from_colliders: Sequence[int] = ()
     shape: ShapeGroups = ShapeGroups()
+    pin_weights: Sequence[float] = ()
+    """One a pin; all are 1 if it is empty."""
 
 
 class CollisionObject(NamedTuple):
@@ -104,10 +109,20 @@ def _cloth(name: str, values: Values, groups: Groups, meets: bool) -> dict[str, 
     else:
         cloth["mass_per_vertex"] = decimal(values["mass_per_vertex"])
     if groups.pins:
-        cloth["pins"] = {"vertices": list(groups.pins)}
+        cloth["pins"] = _pins(groups)
+    for key, default in PIN_DEFAULTS.items():
+        if decimal(values.get(key, default)) != default:
+            cloth[key] = decimal(values[key])
     cloth.update(shape.describe(values, groups.shape))
     cloth["collision"] = collision(values, groups, meets)
     return cloth
+
+
+def _pins(groups: Groups) -> dict[str, Any]:
+    pins: dict[str, Any] = {"vertices": list(groups.pins)}
+    if any(weight < 1.0 for weight in groups.pin_weights):
+        pins["weights"] = [decimal(weight) for weight in groups.pin_weights]
+    return pins
 
 
 def collision(values: Values, groups: Groups, meets: bool) -> dict[str, Any]:

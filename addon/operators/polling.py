@@ -40,7 +40,7 @@ def is_free(cls: type) -> bool:
         cls.poll_message_set(native.problem())
         return False
     if runtime.busy:
-        cls.poll_message_set(pgettext_tip("A bake is running: wait for it or press Esc"))
+        cls.poll_message_set(pgettext_tip("A bake or a grab is running: wait for it or press Esc"))
         return False
     return True
 

@@ -48,6 +48,7 @@ class BOUCLE_PT_cache(PhysicsPanel, Panel):
             row = layout.row(align=True)
             row.operator(Operators.EXPORT_USD)
             row.operator(Operators.EXPORT_ALEMBIC)
+        layout.operator(Operators.GRAB, icon="VIEW_PAN")
         for line in settings.status.split("; "):
             draw_text(layout, line, context)
         if settings.certificate:

@@ -24,7 +24,7 @@ class BOUCLE_PT_field_weights(PhysicsPanel, Panel):
     def draw(self, context: Context) -> None:
         """Lay out."""
         weights = context.object.boucle.field_weights
-        column = self.column()
+        column = self.column(context.object.boucle)
         column.prop(weights, "collection")
         for name in _WEIGHTS:
             column.prop(weights, name, slider=True)

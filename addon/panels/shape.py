@@ -20,7 +20,12 @@ class BOUCLE_PT_shape(PhysicsPanel, Panel):
     def draw(self, context: Context) -> None:
         """Lay out."""
         obj = context.object
-        self.column(obj.boucle).prop_search(obj.boucle, "pin_group", obj, "vertex_groups")
+        column = self.column(obj.boucle)
+        column.prop_search(obj.boucle, "pin_group", obj, "vertex_groups")
+        pins = column.column()
+        pins.active = bool(obj.boucle.pin_group)
+        for name in ("pin_strength", "pin_stiffness", "pin_damping"):
+            pins.prop(obj.boucle, name)
 
 
 CLASSES = (BOUCLE_PT_shape,)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bpy.types import Context, Panel
 
-from .._identifiers import PanelOrder, Panels
+from .._identifiers import Operators, PanelOrder, Panels
 from .cloth import PhysicsPanel
 
 
@@ -21,7 +21,7 @@ class BOUCLE_PT_rest_shape(PhysicsPanel, Panel):
         """Lay out."""
         obj = context.object
         settings = obj.boucle
-        column = self.column()
+        column = self.column(settings)
         column.prop(settings, "use_dynamic_mesh")
         key = column.column()
         key.active = not settings.use_dynamic_mesh
@@ -53,7 +53,7 @@ class BOUCLE_PT_pressure(PhysicsPanel, Panel):
         """Lay out."""
         obj = context.object
         settings = obj.boucle
-        column = self.column()
+        column = self.column(settings)
         column.active = settings.use_pressure
         column.prop(settings, "uniform_pressure_force")
         column.prop(settings, "use_pressure_volume")
@@ -80,10 +80,11 @@ class BOUCLE_PT_sewing(PhysicsPanel, Panel):
     def draw(self, context: Context) -> None:
         """Lay out."""
         settings = context.object.boucle
-        column = self.column()
+        column = self.column(settings)
         column.active = settings.use_sewing_springs
         column.prop(settings, "sewing_force_max")
         column.prop(settings, "weld_distance")
+        column.operator(Operators.ADD_WELD, icon="AUTOMERGE_ON")
 
 
 CLASSES = (BOUCLE_PT_rest_shape, BOUCLE_PT_pressure, BOUCLE_PT_sewing)

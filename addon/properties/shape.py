@@ -33,6 +33,27 @@ class ShapeProperties:
     )  # fmt: skip
     pin_group: StringProperty(
         name="Pin Group",
-        description="Vertex group whose vertices are held: they follow the object and its armature",
+        description="Vertex group whose vertices are held: they follow the object and its armature. Weight 1 holds "
+        "firmly, less draws the vertex to its place like a spring, 0 leaves it free",
         default="", options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    pin_strength: FloatProperty(
+        name="Strength",
+        description="Part of the painted weights that counts (fraction): 1 as painted, 0 lets all pins go. "
+        "Keyframes and drivers weaken or release pins with it",
+        default=1.0, min=0.0, max=1.0, subtype="FACTOR",
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    pin_stiffness: FloatProperty(
+        name="Stiffness",
+        description="Stiffness (N/m) that draws pins of less than full weight to their places: of all that edges join "
+        "to a patch together, so that it holds alike however fine the mesh is",
+        default=1000.0, min=0.0, max=1e9, soft_max=1e5, precision=1, step=100,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    pin_damping: FloatProperty(
+        name="Damping",
+        description="Damping of those pins (ratio to critical): from 1 on a pin alone comes to rest without swinging",
+        default=1.0, min=0.0, max=1e3, soft_max=10.0, precision=2, step=10,
+        override=OVERRIDABLE, update=changed,
     )  # fmt: skip

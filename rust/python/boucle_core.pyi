@@ -152,7 +152,32 @@ class Simulation:
         """Take this gravity (m/s²) in the place of the one before, for all frames until it is told anew."""
 
     def release_pins(self, cloth: int, vertices: Sequence[int] | None = None) -> None:
-        """Let pinned vertices (all if None) go, keeping their velocity."""
+        """Let pinned vertices (all if None) go, keeping their velocity: their weight is 0 from now on."""
+
+    def set_pin_weights(self, cloth: int, weights: Buffer) -> None:
+        """Say how firmly pins are held from now on.
+
+        Args:
+            cloth: Its number.
+            weights: 0 (free) to 1 (hard), float32 or float64 (n,), for *all* vertices of the cloth, of which only the pinned
+                are read. Between them a goal spring draws the pin to its target.
+        """
+
+    def set_pin_stiffness(self, cloth: int, stiffness: float) -> None:
+        """Set the stiffness (N/m) of goal springs from now on: of all pins together that edges join, at weight 1."""
+
+    def grab(self, cloth: int, vertices: Sequence[int], targets: Buffer, weights: Buffer) -> None:
+        """Hold vertices as a hand would, in place of any grabbed before; they need not be pins.
+
+        Args:
+            cloth: Its number.
+            vertices: Which.
+            targets: Positions (m), float32 or float64 (k, 3), where the grip is at the end of the next frame.
+            weights: Each one's part in the grip, above 0 and at most 1, float32 or float64 (k,).
+        """
+
+    def let_go(self) -> None:
+        """Let go what was grabbed, with the velocity it has."""
 
     def advance(self) -> dict[str, float | int | str | list[dict[str, object]] | None]:
         """Move on by one frame and return its certificate: a row of `frames` in report.json, without `seconds`.

@@ -28,6 +28,9 @@ def copy_everything():
     contact.self_friction = 20.0
     contact.vertex_group_self_collisions = "Free"
     contact.collection = bpy.data.collections.new("Ground")
+    settings.effector_weights.gravity = 0.5
+    settings.effector_weights.wind = -2.0
+    settings.effector_weights.boid = 0.0
     modifier.point_cache.frame_start, modifier.point_cache.frame_end = 5, 77
     settings.keyframe_insert("mass", frame=1)
     reports = []
@@ -47,6 +50,7 @@ def copy_everything():
         "none": none,
         "done": list(done),
         "values": {name: getattr(cloth, name) for name in names},
+        "weights": [cloth.field_weights.gravity, cloth.field_weights.wind, cloth.field_weights.all],
         "collection": cloth.collision_collection.name,
         "off": [modifier.show_viewport, modifier.show_render],
         "stack": [m.type for m in obj.modifiers],
@@ -73,13 +77,27 @@ def test_the_settings_come_over_with_their_numbers_and_what_is_lost_is_said(blen
             name
         )
     assert result["collection"] == "Ground"
+    assert result["weights"] == [0.5, 0.0, 1.0]
     assert result["off"] == [False, False] and result["smooth"]
     assert result["stack"] == ["SMOOTH", "CLOTH", "NODES", "MESH_CACHE", "SUBSURF"]
     said, is_whole = result["report"]
     assert "441 vertices of 0.3 kg on 4 m² are 33.1 kg/m²" in said and not is_whole
     lost = said.partition("Not carried over: ")[2].split(", ")
-    assert {"Compression", "Internal Springs", "Bending Group", "its animation"} <= set(lost)
-    assert not {"Pressure", "Fluid Density", "Impulse Clamping"} & set(lost)
+    assert {
+        "Compression",
+        "Internal Springs",
+        "Bending Group",
+        "its animation",
+        "Field Weight Wind",
+        "Field Weight Boid",
+    } <= set(lost)
+    assert not {
+        "Pressure",
+        "Field Weight Gravity",
+        "Field Weight Drag",
+        "Fluid Density",
+        "Impulse Clamping",
+    } & set(lost)
 
 
 def hang_both():

@@ -21,6 +21,7 @@ def rest_shape_and_shrink():
     obj = free_cloth()
     obj.shape_key_add(name="Basis")
     key = obj.shape_key_add(name="Narrow")
+    key.value = 0.0  # 1 by default from Blender 5.0 on
     for point in key.data:
         point.co.x *= 0.5
     obj.boucle.rest_shape_key = "Narrow"
@@ -209,6 +210,11 @@ def sewing():
     out["on"] = [text for text in sentences(obj) if "loose" in text or "length" in text]
     play(1, 50)
     out["closed"] = gap(obj)
+    bpy.ops.boucle.add_weld()
+    bpy.ops.boucle.add_weld()
+    names = [modifier.name for modifier in obj.modifiers]
+    weld = obj.modifiers["Boucle Weld"]
+    out["weld"] = [names[-2:], weld.show_viewport, weld.show_render, round(weld.merge_threshold, 6)]
     out["strain"] = (
         addon("bridge.live").session_of(obj).frames.nearest(50).certificate["max_strain"]
     )
@@ -222,4 +228,5 @@ def test_loose_edges_sew_two_panels_together(new_blender):
     assert count == 7 and abs(gap - 0.3) < 1e-3
     assert found["on"] == []
     assert found["closed"][1] < 0.002
+    assert found["weld"] == [["Boucle Cache", "Boucle Weld"], False, True, 0.002]
     assert found["strain"] < 0.11

@@ -35,6 +35,7 @@ def test_every_change_has_its_word():
     assert words(changed(("solver", "substeps"), 7)) == ["substeps"]
     assert words(changed(("scene", "gravity"), [0, 0, -1.6])) == ["gravity"]
     assert words(changed(("cloth", 0, "pins", "vertices"), [1, 3])) == ["pinned vertices"]
+    assert words(changed(("cloth", 0, "pins", "weights"), [1, 0.5])) == ["weights of pins"]
     assert words(drift.record(SCENE, 9, "u")) == ["topology"]
     assert words(drift.record(SCENE, 8, "t")) == ["vertex count (9 baked, 8 now)"]
     assert words(changed(("force",), [{"kind": "wind"}])) == ["kind"]

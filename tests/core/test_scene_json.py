@@ -86,6 +86,13 @@ def test_the_module_agrees_on_which_integrators_are_implicit():
 def test_pins_and_wind_are_there_only_if_they_act():
     assert described()["cloth"][0]["pins"] == {"vertices": [2, 3]}
     assert "pins" not in described(groups=Groups([], None))["cloth"][0]
+    hard = Groups([2, 3], None, pin_weights=[1.0, 1.0])
+    assert described(groups=hard) == described(), "bakes from before there were soft pins stay"
+    soft = Groups([2, 3], None, pin_weights=[1.0, 0.30000001192])
+    cloth = described(groups=soft, pin_stiffness=1000.0, pin_damping=2.5)["cloth"][0]
+    assert cloth["pins"] == {"vertices": [2, 3], "weights": [1.0, 0.3]}
+    assert cloth["pin_damping"] == 2.5 and "pin_stiffness" not in cloth
+    simulation(described(groups=soft, pin_stiffness=50.0)).advance()
     assert "force" not in described()
     wind = described(use_wind=True)["force"][0]
     assert wind == {"kind": "wind", "velocity": [0.0, 3.0, 0.0], "coefficient": 0.02}

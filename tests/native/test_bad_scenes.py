@@ -137,6 +137,8 @@ SCENES = [
     ("pin motion reversed", "[0] }", "[0], motion = [{ frame = 5 }, { frame = 2 }] }",
      "cloth.flag.pins.motion.1.frame = 2; accepted: a frame after 5"),
     ("pin weight", "[0] }", "[0], weight = 1.5 }", "cloth.flag.pins.weight = 1.5; accepted: 0 to 1"),
+    ("pin weights", "[0] }", "[0], weights = [1, 1] }", "the length of cloth.flag.pins.weights = 2; accepted: 1, one"),
+    ("pin stiffness", DENSITY, DENSITY + "\npin_stiffness = -5", "cloth.flag.pin_stiffness (N/m) is -5; accepted: 0 to"),
     # what collides
     ("thickness zero", "[solver]", "[collision]\nthickness = 0\n[solver]", "collision.thickness = 0.0; accepted: above 0"),
     ("friction nan", "[solver]", "[collision]\nfriction = nan\n[solver]", "collision.friction = NaN; accepted: 0 to 100"),
@@ -170,7 +172,6 @@ SCENES = [
     ("later fabric", "[solver]", "[cloth.fabric]\nshear = 100.0\n[solver]", "cloth.flag.fabric.shear is not supported yet"),
     ("fabric preset", "[solver]", '[cloth.fabric]\npreset = "denim"\n[solver]', "fabric.preset is not supported yet"),
     ("later preset", DENSITY, 'density = 0.2\npreset = "denim"', "cloth.flag.preset is not supported yet"),
-    ("later weight", "[0] }", "[0], weight = 0.5 }", "cloth.flag.pins.weight = 0.5 is not supported yet"),
     ("later tear", "[solver]", "[tear]\nenabled = false\n[solver]", "tear.enabled is not supported yet"),
     *(
         (f"later {kind}", "[solver]", f'[[force]]\nkind = "{kind}"\nstrength = 1\n[solver]',

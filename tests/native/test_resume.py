@@ -14,10 +14,10 @@ frames = [1, 100000]
 [[cloth]]
 name = "sheet"
 grid = { size = [1.0, 1.0], vertices = [24, 24], plane = "xz" }
-pins = ["top_left", { names = ["top_right"], motion = [
+pins = ["top_left", { names = ["top_right"], weight = 0.7, motion = [
     { frame = 1 },
     { frame = 400, location = [0.3, 0.2, 0.1], rotation_deg = [0, 0, 20] },
-] }]
+] }, { names = ["bottom_right"], weight = 0.3, release = 20 }]
 
 [cloth.springs]
 damping = 0.01

@@ -30,6 +30,16 @@ pub(crate) fn positions(
     Ok(numbers.chunks_exact(3).map(Vector::from_column_slice).collect())
 }
 
+/// So many numbers out of a float32 or float64 buffer of shape (n,).
+pub(crate) fn numbers(array: &Bound<'_, PyAny>, what: &str, count: usize) -> PyResult<Vec<f64>> {
+    let py = array.py();
+    let buffer = contiguous(array, what)?;
+    if buffer.item_count() != count || buffer.dimensions() != 1 {
+        return Err(wrong_shape(py, &buffer, what, &format!("({count},)")));
+    }
+    floats(py, &buffer, what)
+}
+
 /// Groups of N points (m) out of a float32 or float64 buffer of shape (n, N, 3).
 pub(crate) fn point_groups<const N: usize>(
     array: &Bound<'_, PyAny>,
@@ -67,6 +77,18 @@ pub(crate) fn check_finite(
         }
         None => Ok(()),
     }
+}
+
+/// The vertices of numbers that Python gave.
+pub(crate) fn vertices(py: Python<'_>, numbers: Vec<i64>, count: usize) -> PyResult<Vec<u32>> {
+    let vertex = |number: i64| match u32::try_from(number) {
+        Ok(vertex) if (vertex as usize) < count => Ok(vertex),
+        _ => {
+            let accepted = format!("0 to {}", count.saturating_sub(1));
+            Err(refuse(py, format!("vertices holds {number}; accepted: {accepted}")))
+        }
+    };
+    numbers.into_iter().map(vertex).collect()
 }
 
 /// Whole numbers from 0 to below 2^32 out of a buffer of 4- or 8-byte integers.

@@ -187,20 +187,52 @@ impl Simulation {
         vertices: Option<Vec<i64>>,
     ) -> PyResult<()> {
         let (index, rest) = self.cloth(py, cloth)?;
-        let count = rest.positions.len();
-        let vertex = |number: i64| match u32::try_from(number) {
-            Ok(vertex) if (vertex as usize) < count => Ok(vertex),
-            _ => {
-                let accepted = format!("0 to {}", count.saturating_sub(1));
-                Err(refuse(py, format!("vertices holds {number}; accepted: {accepted}")))
-            }
-        };
-        let vertices: Vec<u32> = match vertices {
-            Some(vertices) => vertices.into_iter().map(vertex).collect::<PyResult<_>>()?,
+        let vertices = match vertices {
+            Some(vertices) => buffers::vertices(py, vertices, rest.positions.len())?,
             None => rest.pins.clone(),
         };
         self.with(py, |assembly| {
             assembly.simulation.release_pins(index, &vertices);
+            Ok(())
+        })
+    }
+
+    fn set_pin_weights(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        weights: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let (index, rest) = self.cloth(py, cloth)?;
+        let weights = buffers::numbers(weights, "weights", rest.positions.len())?;
+        self.with(py, |assembly| Ok(assembly.simulation.set_pin_weights(index, &weights)?))
+    }
+
+    fn set_pin_stiffness(&mut self, py: Python<'_>, cloth: i64, stiffness: f64) -> PyResult<()> {
+        let index = self.cloth(py, cloth)?.0;
+        self.with(py, |assembly| Ok(assembly.simulation.set_pin_stiffness(index, stiffness)?))
+    }
+
+    fn grab(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        vertices: Vec<i64>,
+        targets: &Bound<'_, PyAny>,
+        weights: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let (index, rest) = self.cloth(py, cloth)?;
+        let vertices = buffers::vertices(py, vertices, rest.positions.len())?;
+        let targets = buffers::positions(targets, "targets", Some(vertices.len()))?;
+        let weights = buffers::numbers(weights, "weights", vertices.len())?;
+        self.with(py, |assembly| {
+            Ok(assembly.simulation.grab(index, &vertices, &targets, &weights)?)
+        })
+    }
+
+    fn let_go(&mut self, py: Python<'_>) -> PyResult<()> {
+        self.with(py, |assembly| {
+            assembly.simulation.let_go();
             Ok(())
         })
     }

@@ -60,7 +60,7 @@ impl Assembly {
             let at = format!("cloth.{}", description.name);
             let track = PinTrack::new(&description.pins, &format!("{at}.pins"), &rest)?;
             let shape = ShapeTrack::new(description, rest.positions.len(), &at)?;
-            let made = cloth(scene, description, rest, track.vertices(), &at)?;
+            let made = cloth(scene, description, rest, track.weighted(), &at)?;
             let shrink = shape.shrink(scene.scene.frames[0]);
             cloths.push(Cloth { tailoring: Tailoring { shrink, ..made.tailoring }, ..made });
             tracks.push(track);
@@ -173,7 +173,7 @@ fn cloth(
     scene: &Scene,
     description: &ClothDescription,
     rest: RestMesh,
-    pins: Vec<u32>,
+    (pins, pin_weights): (Vec<u32>, Vec<f64>),
     at: &str,
 ) -> Result<Cloth> {
     let colliders: Vec<&str> =
@@ -206,7 +206,8 @@ fn cloth(
     })?;
     let pressure = description.pressure.as_ref();
     let pressure = pressure.map(|pressure| pressure.pressure(scene.scene.frames[0]));
-    Ok(Cloth { collision, pressure, ..cloth })
+    let pin_material = description.pin_material();
+    Ok(Cloth { collision, pin_weights, pin_material, pressure, ..cloth })
 }
 
 /// The solver's refusals of a step, told with the table they come from.

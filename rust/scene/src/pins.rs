@@ -23,6 +23,8 @@ pub(crate) struct PinTrack {
 #[derive(Clone, Debug)]
 struct Held {
     vertices: Vec<u32>,
+    /// One a vertex.
+    weights: Vec<f64>,
     motion: Vec<Keyframe>,
     release: Option<i32>,
 }
@@ -32,18 +34,17 @@ impl PinTrack {
     pub(crate) fn new(pins: &Pins, at: &str, rest: &RestMesh) -> Result<Self> {
         let mut owner = BTreeMap::new();
         for (index, group) in pins.groups.iter().enumerate() {
-            for vertex in vertices(group, &pins.key(at, index), rest)? {
-                owner.insert(vertex, index);
+            let own = group.weights.iter().copied();
+            let rest_of = std::iter::repeat(group.weight.unwrap_or(1.0));
+            let found = vertices(group, &pins.key(at, index), rest)?;
+            for (vertex, weight) in found.into_iter().zip(own.chain(rest_of)) {
+                owner.insert(vertex, (index, weight));
             }
         }
-        let held = |(index, group): (usize, &PinGroup)| Held {
-            vertices: owner
-                .iter()
-                .filter(|entry| *entry.1 == index)
-                .map(|entry| *entry.0)
-                .collect(),
-            motion: group.motion.clone(),
-            release: group.release,
+        let held = |(index, group): (usize, &PinGroup)| {
+            let own = owner.iter().filter(|(_, (owner, _))| *owner == index);
+            let (vertices, weights) = own.map(|(&vertex, &(_, weight))| (vertex, weight)).unzip();
+            Held { vertices, weights, motion: group.motion.clone(), release: group.release }
         };
         let groups: Vec<Held> = pins.groups.iter().enumerate().map(held).collect();
         let moves = groups.iter().any(|group| !group.motion.is_empty());
@@ -51,12 +52,12 @@ impl PinTrack {
         Ok(Self { groups, rest })
     }
 
-    /// Every pinned vertex, in order.
-    pub(crate) fn vertices(&self) -> Vec<u32> {
-        let mut vertices: Vec<u32> =
-            self.groups.iter().flat_map(|group| group.vertices.iter().copied()).collect();
-        vertices.sort_unstable();
-        vertices
+    /// Every pinned vertex, in order, and the weight of each.
+    pub(crate) fn weighted(&self) -> (Vec<u32>, Vec<f64>) {
+        let all = self.groups.iter().flat_map(|group| group.vertices.iter().zip(&group.weights));
+        let mut all: Vec<_> = all.map(|(&vertex, &weight)| (vertex, weight)).collect();
+        all.sort_unstable_by_key(|&(vertex, _)| vertex);
+        all.into_iter().unzip()
     }
 
     /// Readies the pins of a cloth for the step from `frame` to the next: lets go what lets go at `frame`, and sets where

@@ -2,7 +2,9 @@
 //!
 //! ```text
 //! "BOUCLECK" | version u32 | digest u64 | frame i32 | substeps u32 | particles u64
-//! | positions and velocities, f64, axis by axis | pinned, a byte each
+//! | positions and velocities, f64, axis by axis
+//! | pins u64 | weight, target, goal of each, f64 | cloths u64 | stiffness of their pins, f64
+//! | grabbed u64 | particle, stiffness, damping, goal, target of each, f64
 //! | points of colliders u64 | their positions, f64, point by point
 //! | numbers of the shape u64 | those, f64: present rest lengths, pressures, welded seams
 //! | implicit integrators only: edges u64 | substeps u32 | step f64 | error f64
@@ -16,7 +18,10 @@ use boucle_geometry::Vector;
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::error::{Error, Result};
+use crate::goals::Goal;
+use crate::grab::Grab;
 use crate::implicit::Memory;
+use crate::pins::Held;
 use crate::state::State;
 
 const MAGIC: &[u8; 8] = b"BOUCLECK";
@@ -31,7 +36,10 @@ pub(crate) struct Checkpoint {
     pub(crate) frame: i32,
     pub(crate) substeps: u32,
     pub(crate) state: State,
-    pub(crate) is_pinned: Vec<bool>,
+    pub(crate) pins: Vec<Held>,
+    /// Stiffness (N/m) of each cloth's pins.
+    pub(crate) pin_stiffness: Vec<f64>,
+    pub(crate) grab: Grab,
     /// Where the points of colliders are (m).
     pub(crate) colliders: Vec<Vector>,
     /// Present rest lengths, pressures and welded seams, where there are any.
@@ -42,7 +50,7 @@ pub(crate) struct Checkpoint {
 impl Checkpoint {
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
         let count = self.state.len();
-        let mut bytes = Vec::with_capacity(HEADER + 49 * count + 8);
+        let mut bytes = Vec::with_capacity(HEADER + 48 * count + 8);
         bytes.extend_from_slice(MAGIC);
         bytes.extend_from_slice(&VERSION.to_le_bytes());
         bytes.extend_from_slice(&self.digest.to_le_bytes());
@@ -50,7 +58,7 @@ impl Checkpoint {
         bytes.extend_from_slice(&self.substeps.to_le_bytes());
         bytes.extend_from_slice(&(count as u64).to_le_bytes());
         write_state(&mut bytes, &self.state);
-        bytes.extend(self.is_pinned.iter().map(|&is_pinned| u8::from(is_pinned)));
+        self.write_holds(&mut bytes);
         bytes.extend_from_slice(&(self.colliders.len() as u64).to_le_bytes());
         let numbers = self.colliders.iter().flatten();
         bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
@@ -67,6 +75,25 @@ impl Checkpoint {
         let checksum = xxh3_64(&bytes);
         bytes.extend_from_slice(&checksum.to_le_bytes());
         bytes
+    }
+
+    fn write_holds(&self, bytes: &mut Vec<u8>) {
+        let mut write = |count: usize, numbers: &mut dyn Iterator<Item = f64>| {
+            bytes.extend_from_slice(&(count as u64).to_le_bytes());
+            bytes.extend(numbers.flat_map(f64::to_le_bytes));
+        };
+        let pin = |pin: &Held| {
+            let ([x, y, z], [gx, gy, gz]) = (pin.target.into(), pin.goal.into());
+            [pin.weight, x, y, z, gx, gy, gz]
+        };
+        write(self.pins.len(), &mut self.pins.iter().flat_map(pin));
+        write(self.pin_stiffness.len(), &mut self.pin_stiffness.iter().copied());
+        let grabbed = |goal: &Goal| {
+            let Goal { particle, stiffness, damping, from, to } = *goal;
+            let ([fx, fy, fz], [x, y, z]) = (from.into(), to.into());
+            [f64::from(particle), stiffness, damping, fx, fy, fz, x, y, z]
+        };
+        write(self.grab.goals.len(), &mut self.grab.goals.iter().flat_map(grabbed));
     }
 
     pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self> {
@@ -90,13 +117,23 @@ impl Checkpoint {
         let frame = i32::from_le_bytes(reader.take()?);
         let substeps = u32::from_le_bytes(reader.take()?);
         let count = reader.count()?;
-        if reader.0.len() < count.checked_mul(49)? {
+        if reader.0.len() < count.checked_mul(48)? {
             return None;
         }
         let state = reader.state(count)?;
-        let (pins, rest) = reader.0.split_at(count);
-        reader.0 = rest;
-        let is_pinned = pins.iter().map(|&byte| byte != 0).collect();
+        let pins = reader.rows()?;
+        let pins = pins.iter().map(|&[weight, x, y, z, gx, gy, gz]| {
+            let (target, goal) = (Vector::new(x, y, z), Vector::new(gx, gy, gz));
+            Held { weight, target, goal }
+        });
+        let pins = pins.collect();
+        let pin_stiffness = reader.numbers()?;
+        let goals = reader.rows()?;
+        let goals = goals.iter().map(|&[particle, stiffness, damping, fx, fy, fz, x, y, z]| {
+            let (from, to) = (Vector::new(fx, fy, fz), Vector::new(x, y, z));
+            Goal { particle: particle as u32, stiffness, damping, from, to }
+        });
+        let grab = Grab { goals: goals.collect() };
         let colliders = reader.vectors()?;
         let shape = reader.numbers()?;
         let memory =
@@ -106,7 +143,9 @@ impl Checkpoint {
             frame,
             substeps,
             state,
-            is_pinned,
+            pins,
+            pin_stiffness,
+            grab,
             colliders,
             shape,
             memory,
@@ -150,22 +189,25 @@ impl Reader<'_> {
         usize::try_from(u64::from_le_bytes(self.take()?)).ok()
     }
 
-    fn vectors(&mut self) -> Option<Vec<Vector>> {
+    /// A count, and so many rows of numbers.
+    fn rows<const N: usize>(&mut self) -> Option<Vec<[f64; N]>> {
         let count = self.count()?;
-        if self.0.len() < count.checked_mul(24)? {
+        if self.0.len() < count.checked_mul(8 * N)? {
             return None;
         }
-        (0..count)
-            .map(|_| Some(Vector::new(self.number()?, self.number()?, self.number()?)))
-            .collect()
+        let mut rows = vec![[0.0; N]; count];
+        for number in rows.as_flattened_mut() {
+            *number = self.number()?;
+        }
+        Some(rows)
+    }
+
+    fn vectors(&mut self) -> Option<Vec<Vector>> {
+        Some(self.rows()?.iter().map(|&[x, y, z]| Vector::new(x, y, z)).collect())
     }
 
     fn numbers(&mut self) -> Option<Vec<f64>> {
-        let count = self.count()?;
-        if self.0.len() < count.checked_mul(8)? {
-            return None;
-        }
-        (0..count).map(|_| self.number()).collect()
+        Some(self.rows()?.iter().map(|&[number]| number).collect())
     }
 
     fn state(&mut self, count: usize) -> Option<State> {
@@ -187,10 +229,24 @@ mod tests {
         let state = State::at_rest(&[Vector::new(1.0, -0.0, 3.5), Vector::new(0.1, 1e-300, 7.0)]);
         let mut memory = Memory::new(&state, 3);
         (memory.tensions[1], memory.step, memory.substeps) = (2.5, 0.01, 4);
-        let is_pinned = vec![true, false];
+        let (target, goal) = (Vector::new(1.0, 2.0, 3.0), Vector::new(-1.0, 0.5, 0.0));
+        let (pins, pin_stiffness) = (vec![Held { weight: 0.25, target, goal }], vec![30.0]);
+        let held = Goal { particle: 1, stiffness: 3.0, damping: 0.5, from: goal, to: target };
+        let grab = Grab { goals: vec![held] };
         let (colliders, memory) = (vec![Vector::new(1.5, -2.0, 1e-9)], Some(memory));
         let shape = vec![1.0, 0.25];
-        Checkpoint { digest: 7, frame: -3, substeps: 9, state, is_pinned, colliders, shape, memory }
+        Checkpoint {
+            digest: 7,
+            frame: -3,
+            substeps: 9,
+            state,
+            pins,
+            pin_stiffness,
+            grab,
+            colliders,
+            shape,
+            memory,
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::collision::Collision;
 use crate::error::{Error, Result, bad_mesh};
 use crate::force::Pressure;
 use crate::law::{Spring, springs_of_mesh};
-use crate::material::SpringMaterial;
+use crate::material::{PinMaterial, SpringMaterial, within_one};
 use crate::tailoring::Tailoring;
 
 /// Farthest coordinate (m) accepted: beyond it differences lose the precision that springs need.
@@ -36,8 +36,13 @@ pub struct Cloth {
     pub springs: Vec<Spring>,
     /// Mass (kg) of each particle.
     pub masses: Vec<f64>,
-    /// Particles that follow their targets, not the forces.
+    /// Particles that follow their targets, or are drawn to them.
     pub pins: Vec<u32>,
+    /// How firmly each of the pins is held at first, in their order: 1 hard, below 1 soft, 0 not at all; all are hard if
+    /// it is empty.
+    pub pin_weights: Vec<f64>,
+    /// What draws soft pins to their targets.
+    pub pin_material: PinMaterial,
     /// Air damping, damping law, deformation rate and limiter; the springs hold their own stiffness.
     pub material: SpringMaterial,
     /// How it collides; not at all if `None`.
@@ -93,6 +98,8 @@ impl Cloth {
             springs,
             masses,
             pins,
+            pin_weights: Vec::new(),
+            pin_material: PinMaterial::default(),
             material,
             collision: None,
             tailoring: Tailoring::default(),
@@ -126,10 +133,22 @@ impl Cloth {
                 "vertex {vertex} has a mass of {mass} kg; accepted: 1e-12 to 1e9"
             ));
         }
+        self.check_pins()
+    }
+
+    fn check_pins(&self) -> Result<()> {
+        let count = self.positions.len();
         if let Some(pin) = self.pins.iter().find(|&&pin| pin as usize >= count) {
             return self.refuse(format!("pin {pin} is no vertex; accepted: 0 to {}", count - 1));
         }
-        Ok(())
+        let (given, wanted) = (self.pin_weights.len(), self.pins.len());
+        if given != 0 && given != wanted {
+            return self.refuse(format!("{given} weights of pins are given; accepted: {wanted}"));
+        }
+        for (pin, &weight) in self.pins.iter().zip(&self.pin_weights) {
+            within_one(&format!("the weight of pin {pin}"), weight)?;
+        }
+        self.pin_material.check()
     }
 
     fn check_springs(&self) -> Result<()> {

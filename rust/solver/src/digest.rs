@@ -24,6 +24,7 @@ pub(crate) fn digest(
             format!("{:?} {:?} {:?}", cloth.material, cloth.pins, cloth.collision).as_bytes(),
         );
         hasher.update(format!("{:?} {:?}", cloth.tailoring, cloth.pressure).as_bytes());
+        hasher.update(format!("{:?} {:?}", cloth.pin_weights, cloth.pin_material).as_bytes());
         for spring in &cloth.springs {
             let [a, b] = spring.ends;
             for part in [a, b, spring.kind as u32] {

@@ -21,6 +21,8 @@ mod contact;
 mod digest;
 mod error;
 mod force;
+mod goals;
+mod grab;
 mod grouped;
 mod implicit;
 mod integrator;
@@ -55,7 +57,7 @@ pub use force::{
     WindLaw,
 };
 pub use law::{Spring, springs_of_mesh};
-pub use material::{DampingLaw, Limiter, SpringKind, SpringMaterial, StiffnessFrom};
+pub use material::{DampingLaw, Limiter, PinMaterial, SpringKind, SpringMaterial, StiffnessFrom};
 pub use overstretch::OverstretchedEdge;
 pub use settings::{IntegratorKind, LinearSolver, MOST_SUBSTEPS, Settings, StepSize};
 pub use simulation::{Interrupter, Simulation};

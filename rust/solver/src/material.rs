@@ -111,6 +111,40 @@ impl SpringMaterial {
     }
 }
 
+/// What draws soft pins to their targets, see [`crate::pins`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct PinMaterial {
+    /// Stiffness (N/m) of all pins together that edges join, at weight 1; a weight below takes a part of it.
+    pub stiffness: f64,
+    /// Damping, as a multiple of what brings a pin alone to rest without swinging.
+    pub damping_ratio: f64,
+}
+
+impl Default for PinMaterial {
+    fn default() -> Self {
+        Self { stiffness: 1000.0, damping_ratio: 1.0 }
+    }
+}
+
+impl PinMaterial {
+    /// Refuses values outside their domains, named as in the scene file.
+    ///
+    /// # Errors
+    /// [`Error::OutOfDomain`] for the first value that is not accepted.
+    pub fn check(&self) -> Result<()> {
+        at_least_zero("pin_stiffness (N/m)", self.stiffness)?;
+        at_least_zero("pin_damping", self.damping_ratio)
+    }
+}
+
+/// Refuses what is not from 0 to 1.
+pub(crate) fn within_one(quantity: &str, value: f64) -> Result<()> {
+    if (0.0..=1.0).contains(&value) {
+        return Ok(());
+    }
+    Err(Error::OutOfDomain { quantity: quantity.to_owned(), value, domain: "0 to 1" })
+}
+
 /// Refuses what is negative, not finite, or so large that its square overflows.
 pub(crate) fn at_least_zero(quantity: &str, value: f64) -> Result<()> {
     if (0.0..=1e12).contains(&value) {

@@ -3,6 +3,7 @@
 mod certifying;
 mod contact;
 mod forces;
+mod holding;
 mod interrupt;
 mod placing;
 mod plan;
@@ -27,6 +28,7 @@ use crate::contact::Contacts;
 use crate::digest::digest;
 use crate::error::{Error, Result};
 use crate::force::Wind;
+use crate::grab::Grab;
 use crate::implicit::{Accuracy, Memory};
 use crate::kernel::CHUNK;
 use crate::law::spring::Law;
@@ -55,6 +57,7 @@ pub struct Simulation {
     spectrum: Spectrum,
     digest: u64,
     pins: Pins,
+    grab: Grab,
     contacts: Contacts,
     limits: Vec<Limit>,
     /// Of the cloths whose rest lengths change.
@@ -135,13 +138,10 @@ impl Simulation {
             .thread_name(|index| format!("boucle-{index}"))
             .build()
             .map_err(|_| Error::Threads(settings.threads))?;
-        let pinned = bases
-            .iter()
-            .zip(&cloths)
-            .flat_map(|(base, cloth)| cloth.pins.iter().map(move |pin| base + pin));
         let system = System::new(&cloths, winds, settings.gravity);
         let mut simulation = Self {
-            pins: Pins::new(pinned, &state),
+            pins: Pins::new(&cloths, &state),
+            grab: Grab::default(),
             method: Method::new(&settings, &cloths, &system, &state),
             system,
             spectrum: Spectrum::default(),
@@ -170,6 +170,7 @@ impl Simulation {
             threads: Arc::new(threads),
             interrupter: Interrupter::default(),
         };
+        simulation.follow_holds();
         simulation.follow_pins();
         simulation.shrink_from_the_first()?;
         simulation.intersect();
@@ -198,31 +199,13 @@ impl Simulation {
         &self.cloths[cloth]
     }
 
-    /// Where the pins of a cloth are to be at the end of the next frame (m): a position for each vertex, of which
-    /// only the pinned are read. They move there in a straight line.
-    pub fn set_pin_targets(&mut self, cloth: usize, targets: &[Vector]) {
-        let base = self.bases[cloth];
-        self.pins.aim(|particle| {
-            let vertex = particle.checked_sub(base)?;
-            targets.get(vertex as usize).copied()
-        });
-    }
-
-    /// Lets pins go, with the velocity they have.
-    pub fn release_pins(&mut self, cloth: usize, vertices: &[u32]) {
-        let base = self.bases[cloth];
-        self.pins.release(|particle| {
-            particle.checked_sub(base).is_some_and(|vertex| vertices.contains(&vertex))
-        });
-        self.follow_pins();
-    }
-
     /// Moves on by one frame.
     ///
     /// # Errors
     /// [`Error::Diverged`] and [`Error::Interrupted`] leave the state of the last good frame;
     /// [`Error::TooManySubsteps`] and [`Error::Unstable`] leave the state as it is.
     pub fn advance(&mut self) -> Result<Certificate> {
+        self.gather_goals();
         let mut substeps = self.plan()?;
         self.keep();
         let mut outcome = self.run(substeps, false);
@@ -246,6 +229,7 @@ impl Simulation {
         }
         self.frame += 1;
         self.end_shape();
+        self.end_holds();
         self.contacts.end_frame();
         self.clipped = self.contacts.take_clipped();
         self.intersect();
@@ -303,6 +287,7 @@ impl Simulation {
                         return Some(Outcome::Interrupted);
                     }
                     self.shape(f64::from(substep) / f64::from(substeps), false);
+                    self.system.goals.start_step(substep, substeps);
                     let Self { system, pins, contacts, limits, state, method, .. } = &mut *self;
                     let step = Step { system, pins, h, number: substep, count: substeps, stride };
                     let is_short = step.run(state, method, contacts, limits);
@@ -378,20 +363,5 @@ impl Simulation {
     fn particles(&self, cloth: usize) -> Range<usize> {
         let base = self.bases[cloth] as usize;
         base..base + self.cloths[cloth].positions.len()
-    }
-
-    /// Rebuilds what depends on which particles are pinned.
-    fn follow_pins(&mut self) {
-        for particle in 0..self.state.len() {
-            self.system.set_pinned(particle, false);
-        }
-
-        for particle in self.pins.particles() {
-            self.system.set_pinned(particle as usize, true);
-        }
-        self.method.follow_pins(&self.system);
-        self.contacts.follow_pins(&self.system.inverse_masses);
-        self.limits = (0..self.cloths.len()).filter_map(|cloth| self.limit_of(cloth)).collect();
-        self.spectrum = Spectrum::of(&self.cloths, &self.system);
     }
 }

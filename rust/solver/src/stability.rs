@@ -7,6 +7,7 @@
 //! w² <= largest eigenvalue of M⁻¹ sum k  L_e   <= 2 max_i sum_j k_ij/m_i      (1/s²)
 //! c  <= largest eigenvalue of M⁻¹ sum kd L_e + (ka + kw)/m                    (1/s)
 //! c  >= w² min kd/k + min ka/m          relative damping only: the axial law leaves turning springs undamped
+//! goal springs add k/m to w² and c/m to c at their particles, at the most the largest of them
 //! ```
 //!
 //! The eigenvalues come from a power iteration with a margin, and never exceed the closed bound. A step is stable if
@@ -88,6 +89,19 @@ impl Spectrum {
     /// The same with so much more damping (1/s) and stiffness by mass (1/s²).
     pub(crate) fn with(self, damping: f64, w_squared: f64) -> Self {
         Self { damping: self.damping + damping, w_squared: self.w_squared + w_squared, ..self }
+    }
+
+    /// The same with goal springs, given their largest k/m (1/s²) and c/m (1/s) and smallest c/k (s).
+    pub(crate) fn with_goals(self, [stiffness, damping, ratio]: [f64; 3]) -> Self {
+        if stiffness == 0.0 {
+            return self;
+        }
+        Self {
+            w_squared: self.w_squared + stiffness,
+            damping: self.damping + damping,
+            damping_by_stiffness: self.damping_by_stiffness.min(ratio),
+            ..self
+        }
     }
 
     /// The largest stable step (s) up to `longest`.

@@ -1,8 +1,8 @@
 //! The forces on all particles, and the one way to use them: all are computed before any particle moves.
 //!
 //! ```text
-//! a_i = g + (sum of springs + wind and fields - ka v_i) / m_i       (m/s²)     for a particle that is free
-//! a_i = 0                                                           for one that is pinned
+//! a_i = g + (sum of springs + goals + wind, fields and pressure - ka v_i) / m_i   (m/s²)   for a particle that is free
+//! a_i = 0                                                                           for one that is pinned
 //! ```
 
 use std::ops::Range;
@@ -13,15 +13,17 @@ use rayon::prelude::*;
 
 use crate::cloth::Cloth;
 use crate::force::{Air, AirScratch, Wind};
+use crate::goals::Goals;
 use crate::kernel::{BLOCK, CHUNK, Layout, Sums, add_from_inside, add_from_outside};
 use crate::state::State;
 
-/// Everything that acts on the particles; only pins change.
+/// Everything that acts on the particles; only what holds them changes.
 #[derive(Debug)]
 pub(crate) struct System {
     pub(crate) layout: Layout,
     pub(crate) air: Air,
     pub(crate) gravity: Vector,
+    pub(crate) goals: Goals,
     /// kg, of pinned particles too.
     pub(crate) masses: Vec<f64>,
     /// 1/m (1/kg), 0 where pinned.
@@ -45,6 +47,8 @@ pub(crate) struct Motion<'a> {
     /// Seconds.
     pub(crate) drift: f64,
     pub(crate) rate: Rate,
+    /// When, in parts of the step, the state is whose accelerations are evaluated.
+    pub(crate) stage: f64,
 }
 
 /// The velocity r by which positions move.
@@ -66,6 +70,7 @@ impl System {
             layout: Layout::new(cloths),
             air: Air::new(winds, cloths),
             gravity,
+            goals: Goals::default(),
             inverse_masses: masses.iter().map(|mass| 1.0 / mass).collect(),
             air_damping: air_damping.collect(),
             masses,
@@ -79,6 +84,11 @@ impl System {
 
     pub(crate) fn is_pinned(&self, particle: usize) -> bool {
         self.inverse_masses[particle] == 0.0
+    }
+
+    /// Whether anything keeps a particle in its place, hard or soft.
+    pub(crate) fn is_held(&self, particle: usize) -> bool {
+        self.is_pinned(particle) || self.goals.draw(particle as u32)
     }
 
     pub(crate) fn set_pinned(&mut self, particle: usize, is_pinned: bool) {
@@ -127,6 +137,9 @@ impl WithSimd for Task<'_> {
         let mut sums = Sums::zeros();
         if !system.air.is_still() {
             system.air.add_forces(chunk, at, self.air, &mut sums.arriving);
+        }
+        if !system.goals.is_empty() {
+            system.goals.add_forces(chunk, at, self.motion.stage, &mut sums.arriving);
         }
         add_from_outside(simd, &system.layout, chunk, at, &mut sums);
         let end = ((chunk + 1) * CHUNK).min(at.len());

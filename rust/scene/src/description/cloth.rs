@@ -1,7 +1,7 @@
 //! `[[cloth]]`: its rest shape, mass, pins and springs.
 
 use boucle_geometry::Vector;
-use boucle_solver::{DampingLaw, Limiter, Mass, SpringMaterial, StiffnessFrom};
+use boucle_solver::{DampingLaw, Limiter, Mass, PinMaterial, SpringMaterial, StiffnessFrom};
 use serde::{Deserialize, Serialize};
 
 use super::choice::{Choice, FabricKeys, Later, NotYet};
@@ -54,6 +54,10 @@ pub struct ClothDescription {
     /// `[cloth.sewing]`.
     #[serde(default, deserialize_with = "table::optional")]
     pub sewing: Option<SewingDescription>,
+    /// Stiffness (N/m) by which pins of weight 1 that hang together would be drawn, were they soft; a weight takes a part.
+    pub pin_stiffness: Option<f64>,
+    /// Damping of soft pins, as a multiple of the critical.
+    pub pin_damping: Option<f64>,
     /// Velocity (m/s) of every vertex at the first frame, but for those that are pinned.
     #[serde(default)]
     pub velocity: [f64; 3],
@@ -79,6 +83,16 @@ impl ClothDescription {
         match (self.density, self.mass_per_vertex) {
             (_, Some(mass)) => Mass::PerVertex(mass),
             (density, None) => Mass::Density(density.unwrap_or(DEFAULT_DENSITY)),
+        }
+    }
+
+    /// What draws soft pins, as the solver takes it.
+    #[must_use]
+    pub fn pin_material(&self) -> PinMaterial {
+        let default = PinMaterial::default();
+        PinMaterial {
+            stiffness: self.pin_stiffness.unwrap_or(default.stiffness),
+            damping_ratio: self.pin_damping.unwrap_or(default.damping_ratio),
         }
     }
 
@@ -117,6 +131,8 @@ impl ClothDescription {
         if let Some(sewing) = &self.sewing {
             sewing.check(&format!("{at}.sewing"))?;
         }
+        let material = self.pin_material();
+        material.check().map_err(|error| Error::input(format!("{at}.{error}")))?;
         let material = self.springs.material();
         material.check().map_err(|error| Error::input(format!("{at}.{error}")))
     }

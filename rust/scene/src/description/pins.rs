@@ -5,6 +5,7 @@
 //! ```toml
 //! pins = ["top_left", "top_right"]
 //! pins = { vertices = [0, 5], release = 60 }
+//! pins = { vertices = [0, 1, 2], weights = [1.0, 0.5, 0.1] }
 //! pins = [ { names = ["top"], motion = [ { frame = 1 }, { frame = 60, location = [0, 0, 0.5] } ] }, "bottom" ]
 //! ```
 
@@ -39,8 +40,10 @@ pub struct PinGroup {
     pub near: Option<[f64; 3]>,
     /// The ball's radius (m).
     pub radius: Option<f64>,
-    /// 1 holds the vertex firmly; less is for later.
+    /// 1 holds the vertices exactly where they are to be (the default), less draws them there by goal springs, 0 lets go.
     pub weight: Option<f64>,
+    /// A weight for each of `vertices`, in the place of one for all.
+    pub weights: Vec<f64>,
     /// Where the pins go; nowhere if empty.
     #[serde(deserialize_with = "table::list")]
     pub motion: Vec<Keyframe>,
@@ -95,10 +98,14 @@ impl PinGroup {
         }
         if let Some(weight) = self.weight {
             limits::within(&format!("{at}.weight"), weight, &(0.0..=1.0), "0 to 1")?;
-            if weight < 1.0 {
-                let later = "is not supported yet (soft pins); accepted: 1";
-                return Err(Error::input(format!("{at}.weight = {weight:?} {later}")));
-            }
+        }
+        for (index, &weight) in self.weights.iter().enumerate() {
+            limits::within(&format!("{at}.weights.{index}"), weight, &(0.0..=1.0), "0 to 1")?;
+        }
+        let (given, wanted) = (self.weights.len(), self.vertices.len());
+        if given != 0 && (given != wanted || self.weight.is_some()) {
+            let accepted = format!("{wanted}, one for each of vertices, and no weight beside them");
+            return Err(Error::refuse(&format!("the length of {at}.weights"), given, &accepted));
         }
         if let Some(frame) = self.release {
             limits::frame(&format!("{at}.release"), frame)?;

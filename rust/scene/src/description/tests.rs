@@ -141,7 +141,6 @@ fn keys_of_later_versions_are_refused_by_name() {
             "cloth.0.model=fabric",
             "cloth.flag.model = \"fabric\" is not supported yet; accepted: \"springs\"",
         ),
-        ("cloth.0.pins.1.weight=0.5", "cloth.flag.pins.1.weight = 0.5 is not supported yet"),
         ("force.0.kind=water", "force.0.kind = \"water\" is not supported yet"),
     ] {
         let error = refused(change);
@@ -213,6 +212,16 @@ const WRONG_VALUES: &[(&str, &str)] = &[
     ("cloth.0.pins={near=[0,0,0], radius=-1}", "cloth.flag.pins.radius = -1.0; accepted"),
     ("cloth.0.pins=[{}]", "cloth.flag.pins.0 accepts one of"),
     ("cloth.0.pins.1.weight=2", "cloth.flag.pins.1.weight = 2.0; accepted: 0 to 1"),
+    (
+        "cloth.0.pins={vertices=[0, 1], weights=[1, nan]}",
+        "cloth.flag.pins.weights.1 = NaN; accepted: 0 to 1",
+    ),
+    (
+        "cloth.0.pins={vertices=[0, 1], weights=[1]}",
+        "the length of cloth.flag.pins.weights = 1; accepted: 2, one for each of vertices",
+    ),
+    ("cloth.0.pin_stiffness=-1", "cloth.flag.pin_stiffness (N/m) is -1; accepted: 0 to 1e12"),
+    ("cloth.0.pin_damping=nan", "cloth.flag.pin_damping is NaN; accepted: 0 to 1e12"),
     (
         "cloth.0.pins.1.motion=[{frame=3},{frame=3}]",
         "cloth.flag.pins.1.motion.1.frame = 3; accepted: a frame after 3",

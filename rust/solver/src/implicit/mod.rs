@@ -148,7 +148,7 @@ impl Implicit {
     /// Forgets what depends on which particles are pinned.
     pub(crate) fn follow_pins(&mut self, system: &System) {
         self.preconditioner.forget();
-        self.pieces.follow_pins(|particle| system.is_pinned(particle));
+        self.pieces.follow_pins(|particle| system.is_held(particle));
     }
 
     /// Takes the present rest lengths of a cloth's springs; `base` is the number of its first particle.
@@ -287,7 +287,7 @@ impl Implicit {
         } = self;
         let by_square = 1.0 / (h * h);
         let System { masses, inverse_masses, .. } = system;
-        let from_rest = Motion { from: still, kick: 1.0, drift: 0.0, rate: Rate::New };
+        let from_rest = Motion { from: still, kick: 1.0, drift: 0.0, rate: Rate::New, stage: 1.0 };
         system.advance(at, residual, air, from_rest);
         for axis in 0..3 {
             let accelerations = residual.velocity.0[axis].iter();
@@ -304,6 +304,11 @@ impl Implicit {
         gradients.take_residual(&residual.position);
         for (i, inertia) in hessian.inertia.iter_mut().enumerate() {
             *inertia = self::inertia(system, air, i, h) as f32;
+        }
+        for (particle, tangent) in system.goals.tangents(h) {
+            if !system.is_pinned(particle) {
+                hessian.inertia[particle] += tangent as f32;
+            }
         }
         hessian.freeze(&system.layout, &at.position, h);
         hessian.tauten(taut.pulling());

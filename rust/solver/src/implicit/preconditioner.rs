@@ -120,7 +120,11 @@ impl Preconditioner {
         let still = system.air.damping();
         let diagonal = system.masses.iter().zip(&system.air_damping);
         let diagonal = diagonal.map(|(mass, damping)| mass / (h * h) + (damping + still) / h);
-        Laplacian::new(&self.pairs, weights.collect(), diagonal.collect(), |particle| {
+        let mut diagonal: Vec<f64> = diagonal.collect();
+        for (particle, tangent) in system.goals.tangents(h) {
+            diagonal[particle] += tangent;
+        }
+        Laplacian::new(&self.pairs, weights.collect(), diagonal, |particle| {
             system.is_pinned(particle)
         })
     }

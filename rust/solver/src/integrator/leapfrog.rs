@@ -23,7 +23,7 @@ impl Integrator for Leapfrog {
                 *x += 0.5 * h * v;
             }
         }
-        let motion = Motion { from: &*state, kick: h, drift: 0.5 * h, rate: Rate::New };
+        let motion = Motion { from: &*state, kick: h, drift: 0.5 * h, rate: Rate::New, stage: 0.5 };
         system.advance(state, &mut scratch.next, &mut scratch.air, motion);
         std::mem::swap(state, &mut scratch.next);
     }

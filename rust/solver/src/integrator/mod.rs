@@ -57,9 +57,9 @@ pub(crate) fn explicit(kind: IntegratorKind) -> Option<&'static dyn Integrator> 
     }
 }
 
-/// `from + h rate`, the stage that Runge-Kutta rules are made of.
-fn euler(from: &State, h: f64) -> Motion<'_> {
-    Motion { from, kick: h, drift: h, rate: Rate::Evaluated }
+/// `from + h rate`, of which Runge-Kutta rules are made, with the rate of a state at a stage of the step.
+fn euler(from: &State, h: f64, stage: f64) -> Motion<'_> {
+    Motion { from, kick: h, drift: h, rate: Rate::Evaluated, stage }
 }
 
 /// The matrix of `(x, v)' = (v, -w² x - c v)`.

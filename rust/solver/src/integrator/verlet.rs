@@ -21,9 +21,11 @@ pub(super) struct Verlet;
 impl Integrator for Verlet {
     fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64) {
         let [drifted, ..] = &mut scratch.stages;
-        let kick_and_drift = Motion { from: &*state, kick: 0.5 * h, drift: h, rate: Rate::New };
+        let kick_and_drift =
+            Motion { from: &*state, kick: 0.5 * h, drift: h, rate: Rate::New, stage: 0.0 };
         system.advance(state, drifted, &mut scratch.air, kick_and_drift);
-        let kick = Motion { from: &*drifted, kick: 0.5 * h, drift: 0.0, rate: Rate::New };
+        let kick =
+            Motion { from: &*drifted, kick: 0.5 * h, drift: 0.0, rate: Rate::New, stage: 1.0 };
         system.advance(drifted, state, &mut scratch.air, kick);
     }
 

@@ -23,12 +23,13 @@ pub(crate) enum Limit {
 }
 
 impl Limit {
-    /// The limiter of a cloth whose first particle is `base`, if it has one that acts after a step.
-    pub(crate) fn of(cloth: &Cloth, base: u32, inverse_masses: &[f64]) -> Option<Self> {
+    /// The limiter of a cloth whose first particle is `base`, if it has one that acts after a step, given which particles
+    /// something holds.
+    pub(crate) fn of(cloth: &Cloth, base: u32, is_held: impl Fn(u32) -> bool) -> Option<Self> {
         match cloth.material.limiter {
             Limiter::None | Limiter::Stiffen => None,
             Limiter::Provot => Some(Self::Provot(Provot::new(cloth, base))),
-            Limiter::Project => Some(Self::Project(Project::new(cloth, base, inverse_masses))),
+            Limiter::Project => Some(Self::Project(Project::new(cloth, base, is_held))),
         }
     }
 

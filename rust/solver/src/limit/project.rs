@@ -84,12 +84,11 @@ impl Project {
         (rate * length / count / weight_by_mass).sqrt()
     }
 
-    pub(crate) fn new(cloth: &Cloth, base: u32, inverse_masses: &[f64]) -> Self {
+    pub(crate) fn new(cloth: &Cloth, base: u32, is_held: impl Fn(u32) -> bool) -> Self {
         let stretch = cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Stretch);
         let edges: Vec<_> = stretch.map(|spring| (spring.ends, spring.rest_length)).collect();
         let count = cloth.positions.len();
-        let is_pinned = |particle: u32| inverse_masses[(base + particle) as usize] == 0.0;
-        let edges = outward(&edges, count, is_pinned);
+        let edges = outward(&edges, count, |particle| is_held(base + particle));
         let mut of_particle = vec![Vec::new(); count];
         for (rank, edge) in edges.iter().enumerate() {
             of_particle[edge.near as usize].push(rank as u32);

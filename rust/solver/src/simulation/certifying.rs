@@ -16,11 +16,14 @@ impl Simulation {
     #[must_use]
     pub fn certificate_of(&self, cloths: Range<usize>) -> Certificate {
         let of_pressure = self.system.air.pressures.energy(cloths.clone(), &self.state);
+        let goals = &self.system.goals;
+        let of_goals: f64 =
+            cloths.clone().map(|cloth| goals.energy(self.particles(cloth), &self.state)).sum();
         let cloths = self.cloths[cloths.clone()].iter().zip(self.bases[cloths].iter().copied());
         let certificate =
             certify(cloths, &self.state, &self.settings.gravity, self.frame, self.substeps_taken);
         Certificate {
-            potential_energy: certificate.potential_energy + of_pressure,
+            potential_energy: certificate.potential_energy + of_pressure + of_goals,
             iterations: self.iterations_taken,
             intersections: self.intersections,
             clipped: self.clipped,

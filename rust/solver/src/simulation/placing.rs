@@ -18,6 +18,8 @@ impl Simulation {
             let particle = particle as usize;
             particles.contains(&particle).then(|| state.position.get(particle))
         });
+        self.pins.end_frame();
+        self.gather_goals();
         self.intersect();
     }
 

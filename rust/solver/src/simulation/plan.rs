@@ -36,8 +36,9 @@ impl Simulation {
         let pressure = air.pressure_damping(&self.state, inverse_masses, fall);
         let [damping, w_squared] = air.field_rates(&self.state, inverse_masses, fall);
         let inflation = air.pressures.stiffness(&self.state, inverse_masses);
-        let spectrum =
-            self.spectrum.stiffened(factor).with(pressure + damping, w_squared + inflation);
+        let goals = self.system.goals.largest_rates(inverse_masses);
+        let spectrum = self.spectrum.stiffened(factor).with_goals(goals);
+        let spectrum = spectrum.with(pressure + damping, w_squared + inflation);
         spectrum.largest_step(rule, self.frame_duration())
     }
 

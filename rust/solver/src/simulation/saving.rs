@@ -3,13 +3,13 @@
 use super::Simulation;
 use crate::checkpoint::Checkpoint;
 use crate::error::{Error, Result};
-use crate::pins::Pins;
+use crate::goals::Goal;
 
 impl Simulation {
     /// The whole state as bytes.
     #[must_use]
     pub fn checkpoint(&self) -> Vec<u8> {
-        let count = self.state.len();
+        let (pins, pin_stiffness) = self.pins.held();
         let checkpoint = Checkpoint {
             digest: self.digest,
             frame: self.frame,
@@ -18,7 +18,9 @@ impl Simulation {
             memory: self.method.memory().cloned(),
             colliders: self.contacts.collider_positions().to_vec(),
             shape: self.shape_numbers(),
-            is_pinned: (0..count).map(|particle| self.system.is_pinned(particle)).collect(),
+            pins,
+            pin_stiffness,
+            grab: self.grab.clone(),
         };
         checkpoint.to_bytes()
     }
@@ -29,9 +31,12 @@ impl Simulation {
     /// [`Error::BadCheckpoint`] when it is damaged or of other cloths or settings.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let checkpoint = Checkpoint::from_bytes(bytes)?;
+        let is_grabbable = |goal: &Goal| (goal.particle as usize) < self.state.len();
         if checkpoint.digest != self.digest
             || checkpoint.state.len() != self.state.len()
             || checkpoint.colliders.len() != self.contacts.collider_positions().len()
+            || !checkpoint.grab.goals.iter().all(is_grabbable)
+            || !self.pins.restore(&checkpoint.pins, &checkpoint.pin_stiffness)
         {
             return Err(Error::BadCheckpoint(
                 "is of another scene or other settings; accepted: the one that it was made from",
@@ -45,12 +50,12 @@ impl Simulation {
         self.frame = checkpoint.frame;
         self.substeps_taken = checkpoint.substeps;
         self.iterations_taken = 0;
-        let pinned = checkpoint.is_pinned.iter().enumerate().filter(|&(_, &is_pinned)| is_pinned);
-        self.pins = Pins::new(pinned.map(|(particle, _)| particle as u32), &self.state);
-        self.follow_pins();
+        self.grab = checkpoint.grab;
+        self.follow_holds();
         if !self.take_shape_numbers(&checkpoint.shape) {
             return Err(Error::BadCheckpoint("is damaged; accepted: a whole one"));
         }
+        self.method.follow_pins(&self.system);
         self.intersect();
         Ok(())
     }

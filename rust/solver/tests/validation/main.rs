@@ -34,6 +34,7 @@ mod robustness;
 mod scenes;
 mod sewing;
 mod sheets;
+mod soft_pins;
 mod stability;
 mod statics;
 mod swing;

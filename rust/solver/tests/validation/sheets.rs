@@ -2,8 +2,8 @@
 
 use boucle_geometry::{Mesh, Vector};
 use boucle_solver::{
-    Cloth, IntegratorKind, Limiter, Mass, Settings, Simulation, Spring, SpringKind, SpringMaterial,
-    StepSize, Tailoring, Wind,
+    Cloth, IntegratorKind, Limiter, Mass, PinMaterial, Settings, Simulation, Spring, SpringKind,
+    SpringMaterial, StepSize, Tailoring, Wind,
 };
 
 /// Standard gravity of the tests (m/s²).
@@ -74,6 +74,8 @@ pub(crate) fn network(
         springs,
         masses,
         pins,
+        pin_weights: Vec::new(),
+        pin_material: PinMaterial::default(),
         material,
         collision: None,
         tailoring: Tailoring::default(),

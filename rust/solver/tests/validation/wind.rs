@@ -146,7 +146,7 @@ fn a_wind_of_one_cloth_leaves_the_others_alone() {
             let mut alone = Simulation::new(vec![corner()], vec![blow(number, 0)], settings())
                 .expect("a simulation");
             run(&mut alone, 3);
-            let moved = alone.velocities(0).iter().map(|v| v.norm()).fold(0.0, f64::max);
+            let moved = alone.velocities(0).iter().map(Vector::norm).fold(0.0, f64::max);
             assert!(moved > 1e-3, "{number} feels nothing");
             for (one, other) in both.positions(number).iter().zip(alone.positions(0)) {
                 assert!((one - other).norm() < allowed * moved, "{integrator:?}: {number}");

@@ -1,0 +1,152 @@
+"""One live cloth: its solver, the frames that are kept, and what both stand on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import bpy
+
+from ..core import drift, points, quantity, scene_json, settle
+from ..core.bake import Moment
+from ..core.live_frames import Frame, LiveFrames
+from ..core.points import Points
+from ..core.quantity import Numbers
+from ..core.refusal import Refusal
+from . import (
+    colliders,
+    display,
+    fields,
+    rest,
+    runtime,
+    sampling,
+    settings,
+    shape,
+    simulation,
+    slot,
+    vertex_attributes,
+)
+from .colliders import Colliders
+from .fields import Fields
+from .pins import Pins
+
+
+@dataclass
+class Session:
+    """One cloth in motion."""
+
+    uid: int
+    solver: Any
+    """None after a fault: the kept frames can still be shown."""
+    frames: LiveFrames
+    pins: Pins
+    colliders: Colliders
+    fields: Fields
+    display: display.Display
+    basis: tuple[object, ...]
+    """What must not change while the session lives; looked at at every frame."""
+    settings: str
+    """A digest of the settings; looked at after undo, which changes them without a word."""
+    place: points.Affine
+    """The object in its parent's space, when the last frame was shown."""
+    waits: str = ""
+    """Why the cloth does not move on at the present frame; empty if it does."""
+    refusal: str = ""
+    """Why the frame after the last could not be simulated when the scene stood there."""
+
+
+def build(obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Session:
+    """Make a session with the present pose as the rest pose.
+
+    Raises:
+        Refusal, native.BoucleError: The cloth cannot be simulated.
+    """
+    if not runtime.rendering:
+        slot.ensure(obj)
+    description = settings.describe(obj, scene, with_groups=True)
+    is_direct = display.may_write(obj) and (not runtime.rendering or rest.is_displaced(obj.data))
+    local = rest.positions(obj.data) if is_direct else sampling.targets(obj, depsgraph)
+    matrix = sampling.object_matrix(obj, depsgraph)
+    to_object = sampling.inverse(obj, matrix)
+    met = Colliders([obj], scene, depsgraph)
+    world = points.transform(local, matrix, "d")
+    rests = [shape.rest(obj, matrix)]
+    make = simulation.maker(
+        description, [simulation.mesh(obj, world)], colliders=met.arrays, rests=rests
+    )
+    solver = make()
+    pushing, held = Fields(obj, scene), Pins(description, 0, len(obj.data.vertices))
+    pose = sampling.pose(obj, depsgraph, held)
+    Moment([pose], met.targets(depsgraph), pushing.sample(depsgraph)).aim(solver)
+    limit = memory_limit()
+    if settle.run(solver, scene_json.settling(description), [len(obj.data.vertices)]):
+        local = read_positions(solver, to_object, len(obj.data.vertices))
+    first = Frame(local, solver.certificate(), read_numbers(solver, obj))
+    shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
+    return Session(
+        uid=obj.session_uid,
+        solver=solver,
+        frames=LiveFrames(obj.boucle.frame_start, first, limit),
+        pins=held,
+        colliders=met,
+        fields=pushing,
+        display=shown,
+        basis=basis_of(obj, scene),
+        settings=settings_digest(obj, scene),
+        place=points.affine(obj.matrix_local),
+    )
+
+
+def memory_limit() -> int:
+    """Bytes that one cloth's live frames may take."""
+    addon = bpy.context.preferences.addons.get(__package__.rpartition(".")[0])
+    return addon.preferences.live_memory * 1_000_000 if addon else 4_000_000_000
+
+
+def basis_of(obj: bpy.types.Object, scene: bpy.types.Scene) -> tuple[object, ...]:
+    """What must not change while a session lives."""
+    mesh = obj.data
+    return (
+        mesh.session_uid,
+        len(mesh.vertices),
+        len(mesh.loops),
+        obj.boucle.frame_start,
+        settings.world(scene),
+        display.may_write(obj),
+        colliders.signature(obj, scene),
+        fields.signature(obj, scene),
+    )
+
+
+def settings_digest(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
+    """A digest of the settings, without the vertices of groups; empty if they contradict each other."""
+    try:
+        description = settings.describe(obj, scene, with_groups=False)
+    except Refusal:
+        return ""
+    pushing = fields.record(obj, scene)
+    return drift.whole_digest(settings.record(obj, description, pushing, with_faces=False))
+
+
+def moment_of(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Moment:
+    """Where pins and colliders go now, and what pushes."""
+    pose = sampling.pose(obj, depsgraph, session.pins)
+    return Moment([pose], session.colliders.targets(depsgraph), session.fields.sample(depsgraph))
+
+
+def read_positions(solver: Any, to_object: points.Affine, vertex_count: int) -> Points:
+    """Where the vertices are (m, object space), float32, flat."""
+    if to_object == points.IDENTITY:
+        out = points.empty("f", 3 * vertex_count)
+        solver.read_positions(0, out)
+        return out
+    world = points.empty("d", 3 * vertex_count)
+    solver.read_positions(0, world)
+    return points.transform(world, to_object, "f")
+
+
+def read_numbers(solver: Any, obj: bpy.types.Object) -> Numbers:
+    """The quantities at the vertices that the user wants to see."""
+    out = quantity.empty(vertex_attributes.wanted(obj), len(obj.data.vertices))
+    quantity.read(solver, 0, out)
+    return out

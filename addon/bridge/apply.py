@@ -6,7 +6,7 @@ from array import array
 
 import bpy
 
-from ..core import bake as core_bake
+from ..core import store
 from ..core.points import Points
 from ..core.refusal import Refusal
 from . import cache, live, mesh_arrays, rest, shown, slot
@@ -121,6 +121,6 @@ def _let_go(obj: bpy.types.Object) -> str:
     if not was_baked:
         return "the live frames are let go"
     if not is_foreign:
-        core_bake.set_aside(cache.own_files(obj))
+        store.set_aside(cache.own_files(obj))
     cache.detach(obj)
     return "its bake is let go" + ("" if is_foreign else "; Restore Previous plays it again")

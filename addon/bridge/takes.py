@@ -12,8 +12,7 @@ import time
 
 import bpy
 
-from ..core import bake as core_bake
-from ..core import cache_paths, pc2, report, takes
+from ..core import cache_paths, pc2, report, store, takes
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, cannot_write
 from . import cache, live, registry, runtime, settings
@@ -75,7 +74,7 @@ def restore(obj: bpy.types.Object, number: int, with_settings: bool) -> str:
     live.drop(obj)
     own = cache.own_files(obj)
     try:
-        core_bake.set_aside(own)
+        store.set_aside(own)
     except OSError as error:
         raise cannot_write(own.pc2, error) from error
     _copy(files, own)

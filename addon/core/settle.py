@@ -22,9 +22,12 @@ class Settling(NamedTuple):
 class Settle:
     """A simulation that begins so many frames before the start frame, on its way there."""
 
-    def __init__(self, simulation: Any, settling: Settling, vertex_counts: Sequence[int]) -> None:
-        """Nothing moves before `advance`; the counts are those of the cloths."""
+    def __init__(
+        self, simulation: Any, settling: Settling, vertex_counts: Sequence[int], start: Any
+    ) -> None:
+        """Nothing moves before `advance`; the counts are those of the cloths, and start aims a simulation at the start frame."""
         self._simulation = simulation
+        self._start = start
         self._left = settling.frames
         self._energy = 0.0
         self._damped = settling.damped
@@ -37,6 +40,9 @@ class Settle:
 
     def advance(self) -> None:
         """Simulate one frame; pins and colliders stay where they are."""
+        self._start.aim(
+            self._simulation
+        )  # cloth that loses its velocity loses the goals of its soft pins
         energy = self._simulation.advance()["kinetic_energy"]
         self._left -= 1
         if not self._damped:
@@ -49,9 +55,9 @@ class Settle:
         self._energy = energy
 
 
-def run(simulation: Any, settling: Settling, vertex_counts: Sequence[int]) -> bool:
+def run(simulation: Any, settling: Settling, vertex_counts: Sequence[int], start: Any) -> bool:
     """Bring a simulation to its start frame at once; whether the cloth has moved."""
-    settle = Settle(simulation, settling, vertex_counts)
+    settle = Settle(simulation, settling, vertex_counts, start)
     while not settle.is_done:
         settle.advance()
     return settling.frames > 0

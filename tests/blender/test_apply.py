@@ -83,4 +83,4 @@ def test_a_frame_becomes_rest_shape_start_pose_or_shape_key(blender):
     assert has_setting == polls
     if has_setting:
         distance, difference, strain = found["start"]
-        assert distance < 0.2 and strain > 0.005 and abs(difference) < 1e-3
+        assert distance < 0.2 and strain > 0.002 and abs(difference) < 1e-3

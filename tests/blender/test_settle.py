@@ -49,7 +49,7 @@ def hang_and_settle():
     # Stopped in the middle and resumed; stopped while it settles.
     baking = addon("bridge.bake")
     for count, name in ((66, "resumed"), (20, "stopped")):
-        bake = baking.Bake(obj, scene)
+        bake = baking.Bake([obj], scene)
         steps = bake.steps()
         for number, step in enumerate(steps):
             step.run()

@@ -132,7 +132,9 @@ impl Simulation {
         let (own, base) = (&mut cloths[cloth], bases[cloth]);
         rest.put(part, own, &mut system.layout);
         method.follow_rest_lengths(own, base);
-        limits.iter_mut().for_each(|limit| limit.follow_rest_lengths(own, base));
+        for limit in limits {
+            limit.follow_rest_lengths(own, base);
+        }
     }
 
     /// The limiter of a cloth: its order is that of the rest lengths as they were given.

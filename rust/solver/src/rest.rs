@@ -60,9 +60,7 @@ impl Rest {
             let whole =
                 shape.map_or(*given, |shape| (shape[a as usize] - shape[b as usize]).norm());
             let factors = factor(a) * factor(b);
-            // Without shrink the bits are those of the rest shape.
-            let shrunk = if factors == 1.0 { whole } else { whole * factors.sqrt() };
-            *to = shrunk.max(CLOSED);
+            *to = (whole * factors.sqrt()).max(CLOSED);
         }
     }
 
@@ -101,7 +99,7 @@ impl Rest {
         let ends = self.from.iter().zip(&self.to).zip(&self.places);
         for (spring, ((from, to), place)) in cloth.springs.iter_mut().zip(ends) {
             // What arrives is exactly there.
-            spring.rest_length = if part == 1.0 { *to } else { from + part * (to - from) };
+            spring.rest_length = if part >= 1.0 { *to } else { from + part * (to - from) };
             if let Some(place) = place {
                 layout.set_rest_length(*place, spring.rest_length);
             }

@@ -67,7 +67,8 @@ impl Cloth {
         let refuse = |reason| Err(Error::BadCloth { cloth: self.name.clone(), reason });
         let count = self.positions.len();
         let mut seams = BTreeSet::new();
-        for &[a, b] in &sewing.seams {
+        let Sewing { seams: pairs, force_max, weld_distance } = sewing;
+        for [a, b] in pairs {
             if a == b || a.max(b) as usize >= count {
                 return refuse(format!(
                     "a seam joins vertices {a} and {b}; accepted: two of the {count} vertices"
@@ -96,7 +97,8 @@ impl Cloth {
             stiffness,
             damping,
         }));
-        self.tailoring.sewing = Some(Sewing { seams: seams.into_iter().collect(), ..sewing });
+        let seams = seams.into_iter().collect();
+        self.tailoring.sewing = Some(Sewing { seams, force_max, weld_distance });
         self.check()?;
         Ok(self)
     }

@@ -196,7 +196,7 @@ impl Pressures {
         for Filling { from, to, now, .. } in &mut self.fillings {
             // What arrives is exactly there.
             let mix =
-                |i: usize| if part == 1.0 { to[i] } else { from[i] + part * (to[i] - from[i]) };
+                |i: usize| if part >= 1.0 { to[i] } else { from[i] + part * (to[i] - from[i]) };
             *now = std::array::from_fn(mix);
         }
     }
@@ -263,7 +263,7 @@ impl Pressures {
         });
         for (filling, [pressure, _]) in self.fillings.iter().zip(&*levels) {
             let particles = filling.first..filling.first + filling.count;
-            let own = forces[particles.clone()].par_iter_mut().zip(&filling.weights);
+            let own = forces[particles].par_iter_mut().zip(&filling.weights);
             own.with_min_len(CHUNK).enumerate().for_each(|(vertex, (force, weight))| {
                 let particle = filling.first + vertex;
                 let corners = self.particle_starts[particle] as usize

@@ -132,7 +132,9 @@ impl Simulation {
         let (own, base) = (&mut cloths[cloth], bases[cloth]);
         rest.put(part, own, &mut system.layout);
         method.follow_rest_lengths(own, base);
-        limits.iter_mut().for_each(|limit| limit.follow_rest_lengths(own, base));
+        for limit in limits {
+            limit.follow_rest_lengths(own, base);
+        }
     }
 
     /// The limiter of a cloth: its order is that of the rest lengths as they were given.
@@ -166,7 +168,7 @@ impl Simulation {
             numbers.resize(self.rests.len(), 0.0);
         }
         numbers.extend(self.system.air.pressures.targets().flatten());
-        numbers.extend(self.seams.welded().map(|is_welded| if is_welded { 1.0 } else { 0.0 }));
+        numbers.extend(self.seams.welded().map(|is_welded| f64::from(u8::from(is_welded))));
         numbers
     }
 
@@ -191,8 +193,8 @@ impl Simulation {
         let (Some(levels), Some(welded)) = (take(3 * level_count), take(seam_count)) else {
             return numbers.is_empty() && self.take_lengths(&lengths);
         };
-        let levels = levels.as_chunks::<3>().0.iter().copied().map(Level::from);
-        self.system.air.pressures.jump(levels);
+        let levels: &[Level] = levels.as_chunks::<3>().0;
+        self.system.air.pressures.jump(levels.iter().copied());
         let Self { seams, cloths, system, .. } = self;
         if seams.jump(welded.iter().map(|w| *w > 0.0), cloths, &mut system.layout) {
             self.follow_welds();

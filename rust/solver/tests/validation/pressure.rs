@@ -164,15 +164,14 @@ fn the_limiter_holds_a_balloon_that_its_springs_would_not() {
     assert!((1.2..1.34).contains(&(end / start)), "{start} m³ became {end} m³");
 }
 
-/// Work of the pressure goes into springs and motion. What the steps lose near their stability bound is less than a part in
-/// 500; the filling gives 1000 times that.
+/// Work of the pressure goes into springs and motion, all of it but for the error of fine steps.
 #[test]
 fn energy_counts_what_the_filling_gives() {
     let pressure =
         Pressure { uniform: 20.0, factor: 100.0, target_volume: Some(0.6), ..Pressure::default() };
     let cloth = balloon(4, 300.0, pressure);
     let cloth = Cloth { material: SpringMaterial { air_damping: 0.0, ..cloth.material }, ..cloth };
-    let settings = weightless(IntegratorKind::Rk4, StepSize::Auto);
+    let settings = weightless(IntegratorKind::Rk4, StepSize::Substeps(60));
     let mut simulation = simulation(cloth, settings);
     let energy = |simulation: &Simulation| {
         let certificate = simulation.certificate();
@@ -184,9 +183,9 @@ fn energy_counts_what_the_filling_gives() {
         run(&mut simulation, 1);
         let [kinetic, whole] = energy(&simulation);
         most = most.max(kinetic);
-        assert!((whole - start).abs() < 2e-3 * most.max(1.0), "{whole} J after {start} J");
+        assert!((whole - start).abs() < 1e-3 * most.max(0.1), "{whole} J after {start} J");
     }
-    assert!(most > 0.5, "it hardly moves: {most} J");
+    assert!(most > 0.3, "it hardly moves: {most} J");
 }
 
 #[test]

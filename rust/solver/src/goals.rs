@@ -29,7 +29,7 @@ pub(crate) struct Goal {
 /// All goal springs, by particle; there may be several at one.
 #[derive(Debug, Default)]
 pub(crate) struct Goals {
-    goals: Vec<Goal>,
+    springs: Vec<Goal>,
     /// How far through the frame the present step begins, and its part of it.
     step: [f64; 2],
     /// Length of a frame (s).
@@ -40,27 +40,27 @@ impl Goals {
     pub(crate) fn new(goals: impl Iterator<Item = Goal>, duration: f64) -> Self {
         let mut goals: Vec<_> = goals.filter(|goal| goal.stiffness > 0.0).collect();
         goals.sort_by_key(|goal| goal.particle);
-        Self { goals, step: [0.0; 2], duration }
+        Self { springs: goals, step: [0.0; 2], duration }
     }
 
     pub(crate) fn is_empty(&self) -> bool {
-        self.goals.is_empty()
+        self.springs.is_empty()
     }
 
     /// The particles that are drawn, in order.
     pub(crate) fn particles(&self) -> impl Iterator<Item = u32> {
-        self.goals.iter().map(|goal| goal.particle)
+        self.springs.iter().map(|goal| goal.particle)
     }
 
     /// Whether a particle is drawn.
     pub(crate) fn draw(&self, particle: u32) -> bool {
-        self.goals.binary_search_by_key(&particle, |goal| goal.particle).is_ok()
+        self.springs.binary_search_by_key(&particle, |goal| goal.particle).is_ok()
     }
 
     /// Whether the springs are the same, wherever their goals are.
     pub(crate) fn are_as_stiff_as(&self, other: &Self) -> bool {
         let springs = |goal: &Goal| (goal.particle, goal.stiffness, goal.damping);
-        self.goals.iter().map(springs).eq(other.goals.iter().map(springs))
+        self.springs.iter().map(springs).eq(other.springs.iter().map(springs))
     }
 
     /// Begins a step of a frame: its number, from 1, of how many.
@@ -79,8 +79,8 @@ impl Goals {
     ) {
         let part = self.step[0] + stage * self.step[1];
         let first = chunk * CHUNK;
-        let begin = self.goals.partition_point(|goal| (goal.particle as usize) < first);
-        for goal in &self.goals[begin..] {
+        let begin = self.springs.partition_point(|goal| (goal.particle as usize) < first);
+        for goal in &self.springs[begin..] {
             let particle = goal.particle as usize;
             if particle >= first + CHUNK {
                 break;
@@ -98,7 +98,7 @@ impl Goals {
     /// `k + c/h` (kg/s²) of each spring, by particle.
     pub(crate) fn tangents(&self, h: f64) -> impl Iterator<Item = (usize, f64)> {
         let tangent = move |goal: &Goal| goal.stiffness + goal.damping / h;
-        self.goals.iter().map(move |goal| (goal.particle as usize, tangent(goal)))
+        self.springs.iter().map(move |goal| (goal.particle as usize, tangent(goal)))
     }
 
     /// Energy (J) between two frames, of springs on these particles.
@@ -107,14 +107,14 @@ impl Goals {
             let away = state.position.get(goal.particle as usize) - goal.from;
             0.5 * goal.stiffness * away.norm_squared()
         };
-        let own = self.goals.iter().filter(|goal| particles.contains(&(goal.particle as usize)));
+        let own = self.springs.iter().filter(|goal| particles.contains(&(goal.particle as usize)));
         own.map(energy).sum()
     }
 
     /// The largest k/m (1/s²) and c/m (1/s) of a particle, and the smallest c/k (s) of a spring; zeros if there is none.
     pub(crate) fn largest_rates(&self, inverse_masses: &[f64]) -> [f64; 3] {
         let (mut stiffness, mut damping, mut ratio) = (0.0_f64, 0.0_f64, f64::INFINITY);
-        for goals in self.goals.chunk_by(|a, b| a.particle == b.particle) {
+        for goals in self.springs.chunk_by(|a, b| a.particle == b.particle) {
             let inverse = inverse_masses[goals[0].particle as usize];
             stiffness =
                 stiffness.max(inverse * goals.iter().map(|goal| goal.stiffness).sum::<f64>());
@@ -126,7 +126,7 @@ impl Goals {
 
     /// Ends a frame: all goals are where they were to be, and rest there.
     pub(crate) fn end_frame(&mut self) {
-        for goal in &mut self.goals {
+        for goal in &mut self.springs {
             goal.from = goal.to;
         }
     }

@@ -49,7 +49,7 @@ pub(crate) struct Held {
 /// The pins of all cloths, by particle.
 #[derive(Debug, Default)]
 pub(crate) struct Pins {
-    pins: Vec<Pin>,
+    all: Vec<Pin>,
     /// Stiffness (N/m) of a patch of weight 1, of each cloth.
     stiffness: Vec<f64>,
     damping_ratio: Vec<f64>,
@@ -80,7 +80,7 @@ impl Pins {
             }));
         }
         Self {
-            pins,
+            all: pins,
             stiffness: cloths.iter().map(|cloth| cloth.pin_material.stiffness).collect(),
             damping_ratio: cloths.iter().map(|cloth| cloth.pin_material.damping_ratio).collect(),
         }
@@ -92,12 +92,12 @@ impl Pins {
     }
 
     fn hard(&self) -> impl Iterator<Item = &Pin> {
-        self.pins.iter().filter(|pin| pin.held.weight >= 1.0)
+        self.all.iter().filter(|pin| pin.held.weight >= 1.0)
     }
 
     /// The goal springs of soft pins.
     pub(crate) fn goals(&self) -> impl Iterator<Item = Goal> {
-        let soft = self.pins.iter().filter(|pin| pin.held.weight > 0.0 && pin.held.weight < 1.0);
+        let soft = self.all.iter().filter(|pin| pin.held.weight > 0.0 && pin.held.weight < 1.0);
         soft.map(|pin| {
             let cloth = pin.cloth as usize;
             let stiffness = pin.held.weight * self.stiffness[cloth] * pin.share;
@@ -109,14 +109,14 @@ impl Pins {
 
     /// Sets the targets of the pins for which there is one.
     pub(crate) fn aim(&mut self, target_of: impl Fn(u32) -> Option<Vector>) {
-        for Pin { particle, held, .. } in &mut self.pins {
+        for Pin { particle, held, .. } in &mut self.all {
             held.target = target_of(*particle).unwrap_or(held.target);
         }
     }
 
     /// Sets the weights of the pins for which there is one.
     pub(crate) fn weigh(&mut self, weight_of: impl Fn(u32) -> Option<f64>) {
-        for Pin { particle, held, .. } in &mut self.pins {
+        for Pin { particle, held, .. } in &mut self.all {
             held.weight = weight_of(*particle).unwrap_or(held.weight);
         }
     }
@@ -154,23 +154,23 @@ impl Pins {
 
     /// Ends a frame: all goals are where they were to be.
     pub(crate) fn end_frame(&mut self) {
-        for Pin { held, .. } in &mut self.pins {
+        for Pin { held, .. } in &mut self.all {
             held.goal = held.target;
         }
     }
 
     /// What changes: of each pin, and the stiffness of each cloth.
     pub(crate) fn held(&self) -> (Vec<Held>, Vec<f64>) {
-        (self.pins.iter().map(|pin| pin.held).collect(), self.stiffness.clone())
+        (self.all.iter().map(|pin| pin.held).collect(), self.stiffness.clone())
     }
 
     /// Takes up what [`Self::held`] gave; false if it is of other pins.
     #[must_use]
     pub(crate) fn restore(&mut self, held: &[Held], stiffness: &[f64]) -> bool {
-        if held.len() != self.pins.len() || stiffness.len() != self.stiffness.len() {
+        if held.len() != self.all.len() || stiffness.len() != self.stiffness.len() {
             return false;
         }
-        for (pin, held) in self.pins.iter_mut().zip(held) {
+        for (pin, held) in self.all.iter_mut().zip(held) {
             pin.held = *held;
         }
         self.stiffness.copy_from_slice(stiffness);

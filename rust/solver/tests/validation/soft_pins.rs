@@ -168,7 +168,7 @@ fn what_was_free_becomes_a_hard_pin_within_a_frame_and_bursts_nothing() {
         let mut simulation = simulation(cloth, lying::settings(integrator));
         simulation.set_pin_weights(0, &vec![0.0; rest.len()]).expect("weights");
         run(&mut simulation, 8);
-        assert!(rest[0].z - simulation.positions(0)[0].z > 0.4, "it fell");
+        assert!(rest[0].z - simulation.positions(0)[0].z > 0.2, "it fell");
         simulation.set_pin_weights(0, &vec![1.0; rest.len()]).expect("weights");
         run(&mut simulation, 1);
         for &pin in &pins {

@@ -1,8 +1,8 @@
 //! All force fields on all vertices.
 //!
 //! Magnetic forces do no work, but with steps of h seconds they would: they turn a velocity by their rate w (1/s), and
-//! what an implicit step makes of a turn by much more than `w h = 1/2` depends on how often it is iterated. So the rate
-//! is limited to that, far above what cloth in a magnetic field of Blender's usual strengths asks for (a strength of 1
+//! what an implicit step makes of a turn by much more than `w h = 1/10` depends on how often it is iterated. So the rate
+//! is limited to that, above what cloth in a magnetic field of Blender's usual strengths asks for (a strength of 1
 //! turns cloth of 0.2 kg/m² by 2.4 a second, steps are of some milliseconds). Explicit steps would add the square of the
 //! angle to the energy: they are limited to a much smaller one.
 
@@ -12,7 +12,7 @@ use super::air::FaceAir;
 use super::field::{Field, Push, draw};
 
 /// Largest turn by magnetic fields in a step.
-const IMPLICIT_TURN: f64 = 0.5;
+const IMPLICIT_TURN: f64 = 0.1;
 const EXPLICIT_TURN: f64 = 0.02;
 
 /// What the fields do to one vertex.

@@ -54,7 +54,7 @@ fn gradient_noise(place: &Vector, salt: u64) -> Vector {
 fn bits_at(corner: &Vector, salt: u64) -> u64 {
     const FACTORS: [u64; 3] = [0x9E37_79B9_7F4A_7C15, 0xC2B2_AE3D_27D4_EB4F, 0x1656_67B1_9E37_79F9];
     let whole = |axis: usize| (corner[axis] as i64).cast_unsigned().wrapping_mul(FACTORS[axis]);
-    mixed(whole(0) ^ whole(1) ^ whole(2) ^ salt << 60)
+    mixed(whole(0) ^ whole(1) ^ whole(2) ^ (salt << 60))
 }
 
 /// How far `way` goes along one of the twelve ways from the middle of a cube to the middles of its edges, which 21 bits
@@ -77,7 +77,8 @@ mod tests {
         (0..20_000_u64).map(|i| Vector::from_fn(|axis, _| 50.0 * scattered(3 * i + axis as u64)))
     }
 
-    /// What Blender's turbulence has on cloth (tests/blender/test_fields.py): 0.17 and half of the correlation at 0.4.
+    /// The same law with other random numbers, in numpy: 0.177, and 0.44 of the correlation left at 0.39 m. That this is
+    /// what Blender's cloth feels is in tests/blender/test_fields.py.
     #[test]
     fn turbulence_has_blenders_spread_and_correlation_length() {
         let shift = Vector::new(0.24, 0.24, 0.2);
@@ -90,10 +91,10 @@ mod tests {
             product += here.dot(&there);
         }
         let rms = (square / 60_000.0).sqrt();
-        assert!((rms / 0.167 - 1.0).abs() < 0.05, "{rms}");
+        assert!((rms / 0.177 - 1.0).abs() < 0.05, "{rms}");
         assert!((mean / 20_000.0).abs() < 0.01, "{mean}");
         let correlation = product / square;
-        assert!((correlation - 0.5).abs() < 0.1, "{correlation}");
+        assert!((correlation - 0.44).abs() < 0.05, "{correlation}");
     }
 
     #[test]

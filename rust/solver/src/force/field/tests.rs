@@ -111,7 +111,8 @@ fn falloff_fades_as_blenders_does() {
     }
 }
 
-/// Slopes by central differences against what stands in the matrix: never less. The turn is no slope of that kind.
+/// Slopes by central differences against what stands in the matrix: never less. A whirl is no
+/// slope of that kind, nor is a turn.
 #[test]
 fn damping_and_stiffness_are_no_less_than_the_slopes_of_the_force() {
     let kinds = [
@@ -135,7 +136,8 @@ fn damping_and_stiffness_are_no_less_than_the_slopes_of_the_force() {
                 let damping = -slope(&|shift| push_at(&field, x, shifted(v, shift)));
                 assert!(damping <= known.damping + 1e-8, "{field:?}: {damping}");
                 let stiffness = -slope(&|shift| push_at(&field, shifted(x, shift), v));
-                assert!(stiffness <= known.stiffness + 1e-8, "{field:?}: {stiffness}");
+                let whirls = kind == FieldKind::Vortex;
+                assert!(whirls || stiffness <= known.stiffness + 1e-8, "{field:?}: {stiffness}");
             }
         }
     }

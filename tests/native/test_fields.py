@@ -54,7 +54,7 @@ def test_fields_that_are_not_accepted_leave_those_before(sheet, fields, match):
 
 
 def test_gravity_must_be_three_finite_numbers(simulation):
-    with pytest.raises(boucle_core.SceneError, match="gravity .* is inf; accepted: -1e6 to 1e6"):
+    with pytest.raises(boucle_core.SceneError, match=r"gravity .* is inf; accepted: -1e6 to 1e6"):
         simulation.set_gravity((0.0, 0.0, float("inf")))
     with pytest.raises((TypeError, ValueError)):
         simulation.set_gravity((0.0, 1.0))

@@ -100,9 +100,6 @@ def _stack_errors(obj: bpy.types.Object) -> Iterator[Problem]:
 
 
 def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
-    group = obj.boucle.pin_group
-    if not group:
-        yield _warning(f'"{obj.name}": no Pin Group is set, so the cloth falls freely')
     yield from _loose_edges(obj)
     animated = [name for name in SAMPLED_ONCE if animation.moves(obj, f"boucle.{name}")]
     if animated:

@@ -25,7 +25,10 @@ class Settle:
     def __init__(
         self, simulation: Any, settling: Settling, vertex_counts: Sequence[int], start: Any
     ) -> None:
-        """Nothing moves before `advance`; the counts are those of the cloths, and start aims a simulation at the start frame."""
+        """Nothing moves before `advance`.
+
+        The counts are those of the cloths; `start.aim` tells a simulation where pins and colliders are at the start frame.
+        """
         self._simulation = simulation
         self._start = start
         self._left = settling.frames
@@ -40,9 +43,8 @@ class Settle:
 
     def advance(self) -> None:
         """Simulate one frame; pins and colliders stay where they are."""
-        self._start.aim(
-            self._simulation
-        )  # cloth that loses its velocity loses the goals of its soft pins
+        # Cloth that is stopped loses the goals of its soft pins: they are given anew.
+        self._start.aim(self._simulation)
         energy = self._simulation.advance()["kinetic_energy"]
         self._left -= 1
         if not self._damped:

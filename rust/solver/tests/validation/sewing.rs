@@ -28,7 +28,8 @@ fn panels(gap: f64, sewing: Sewing) -> Cloth {
     let seams = (0..N).map(|row| [row * N + N - 1, N * N + row * N]).collect();
     let material = SpringMaterial { air_damping: 0.001, ..SpringMaterial::default() };
     let cloth = cloth(mesh, positions, &Mass::Density(0.2), material, &[]);
-    cloth.sewn(Sewing { seams, ..sewing }).expect("a sewn cloth")
+    let Sewing { force_max, weld_distance, .. } = sewing;
+    cloth.sewn(Sewing { seams, force_max, weld_distance }).expect("a sewn cloth")
 }
 
 fn still() -> Settings {

@@ -252,7 +252,9 @@ fn digest(
         }
     }
     for pair in meshes.iter().flat_map(|rest| rest.mesh.loose_edges()) {
-        pair.iter().for_each(|vertex| hash.update(&vertex.to_le_bytes()));
+        for vertex in pair {
+            hash.update(&vertex.to_le_bytes());
+        }
     }
     for collider in colliders {
         collider.feed(&mut hash);

@@ -193,7 +193,8 @@ fn between(
     frame: i32,
 ) -> Option<[f64; 2]> {
     let before = keys.clone().rev().find(|(at, _)| *at <= frame);
-    let after = keys.clone().find(|(at, _)| *at > frame);
+    let mut keys = keys;
+    let after = keys.find(|(at, _)| *at > frame);
     Some(match (before, after) {
         (Some((from, one)), Some((to, other))) => {
             let share = f64::from(frame - from) / f64::from(to - from);

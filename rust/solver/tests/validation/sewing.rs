@@ -12,7 +12,7 @@ const N: u32 = 8;
 const SPACING: f64 = 0.1;
 
 /// Two square panels side by side, apart by a gap (m), whose near edges are sewn together.
-fn panels(gap: f64, sewing: Sewing) -> Cloth {
+fn panels(gap: f64, sewing: &Sewing) -> Cloth {
     let one = grid_positions(N, N, SPACING);
     let width = f64::from(N - 1) * SPACING + gap;
     let positions: Vec<Vector> =
@@ -28,7 +28,8 @@ fn panels(gap: f64, sewing: Sewing) -> Cloth {
     let seams = (0..N).map(|row| [row * N + N - 1, N * N + row * N]).collect();
     let material = SpringMaterial { air_damping: 0.001, ..SpringMaterial::default() };
     let cloth = cloth(mesh, positions, &Mass::Density(0.2), material, &[]);
-    cloth.sewn(Sewing { seams, ..sewing }).expect("a sewn cloth")
+    let Sewing { force_max, weld_distance, .. } = *sewing;
+    cloth.sewn(Sewing { seams, force_max, weld_distance }).expect("a sewn cloth")
 }
 
 fn still() -> Settings {
@@ -41,7 +42,7 @@ fn widest(simulation: &Simulation) -> f64 {
 
 #[test]
 fn seams_are_springs_of_their_own_that_no_certificate_counts() {
-    let cloth = panels(0.3, Sewing::default());
+    let cloth = panels(0.3, &Sewing::default());
     let seams = cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Sewing);
     assert_eq!(seams.count(), N as usize);
     let simulation = simulation(cloth, still());
@@ -62,7 +63,7 @@ fn seams_close_and_the_cloth_stays_where_it_is_as_a_whole() {
         (IntegratorKind::ImplicitEuler, 0.05, 48),
         (IntegratorKind::SymplecticEuler, 0.05, 48),
     ] {
-        let cloth = panels(0.3, Sewing { force_max, ..Sewing::default() });
+        let cloth = panels(0.3, &Sewing { force_max, ..Sewing::default() });
         let masses = cloth.masses.clone();
         let middle = |positions: &[Vector]| {
             let moments = positions.iter().zip(&masses).map(|(x, mass)| *mass * x);
@@ -83,7 +84,7 @@ fn seams_close_and_the_cloth_stays_where_it_is_as_a_whole() {
 #[test]
 fn a_seam_pulls_with_no_more_than_its_largest_force() {
     for (force_max, expected) in [(0.0, 150.0), (2.0, 2.0), (1000.0, 150.0)] {
-        let cloth = panels(0.3, Sewing { force_max, ..Sewing::default() });
+        let cloth = panels(0.3, &Sewing { force_max, ..Sewing::default() });
         let material = SpringMaterial { limiter: Limiter::None, ..cloth.material };
         let cloth = Cloth { material, ..cloth };
         let forces = forces_at(&cloth, &[], Vector::zeros(), &cloth.positions);
@@ -99,7 +100,7 @@ fn sewn_ends_meet_though_the_cloth_is_thick() {
     for (thickness, left) in [(0.01, 0.001), (0.04, 0.1)] {
         let collision = Some(Collision { thickness, ..Collision::default() });
         let sewing = Sewing { force_max: 0.1, ..Sewing::default() };
-        let cloth = Cloth { collision, ..panels(0.3, sewing) };
+        let cloth = Cloth { collision, ..panels(0.3, &sewing) };
         let mut simulation = simulation(cloth, still());
         for _ in 0..48 {
             run(&mut simulation, 1);
@@ -144,7 +145,7 @@ fn a_rolled_sheet_closes_to_a_tube() {
 fn what_is_welded_stays_joined() {
     let sewing = |weld_distance| Sewing { force_max: 0.02, weld_distance, ..Sewing::default() };
     let make = |weld_distance| {
-        let cloth = panels(0.02, sewing(weld_distance));
+        let cloth = panels(0.02, &sewing(weld_distance));
         // The far edges are pinned, and pull away once the seams have met.
         let pins = (0..N).flat_map(|row| [row * N, N * N + row * N + N - 1]).collect();
         simulation(Cloth { pins, ..cloth }, still())
@@ -183,7 +184,7 @@ fn what_is_welded_stays_joined() {
 
 #[test]
 fn seams_that_cannot_be_are_refused() {
-    let plain = panels(0.3, Sewing::default());
+    let plain = panels(0.3, &Sewing::default());
     let bare = Cloth { springs: plain.springs.clone(), ..plain.clone() };
     for (seam, expected) in [
         ([3, 3], "a seam joins vertices 3 and 3; accepted: two of the 128 vertices"),

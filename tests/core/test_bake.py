@@ -201,7 +201,7 @@ class Aimed(Touching):
         self.aims.append((self.frame + 1, collider, targets))
 
 
-def test_pins_and_colliders_are_told_where_they_go_before_each_frame(tmp_path):
+def test_pins_and_colliders_are_told_where_they_go_at_the_start_and_before_each_frame(tmp_path):
     simulation = Aimed()
 
     def among(frame):
@@ -210,8 +210,8 @@ def test_pins_and_colliders_are_told_where_they_go_before_each_frame(tmp_path):
     for step in bake.bake(simulation, store(tmp_path), among, False, boucle_core.InternalError):
         step.run()
     assert simulation.aims == [
-        (frame, number, f"{name} at {frame}")
-        for frame in range(2, END + 1)
+        (max(frame, 2), number, f"{name} at {frame}")
+        for frame in range(1, END + 1)
         for number, name in enumerate(("ball", "box"))
     ]
 

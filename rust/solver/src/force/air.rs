@@ -37,6 +37,13 @@ pub(crate) struct AirScratch {
     pushed: Vec<Pushed>,
 }
 
+impl AirScratch {
+    /// Stiffness (N/m) with which fields hold a particle, at most; as it was last observed.
+    pub(crate) fn stiffness_of(&self, particle: usize) -> f64 {
+        self.pushed.get(particle).map_or(0.0, |pushed| pushed.stiffness)
+    }
+}
+
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FaceAir {
     /// Unit normal, or zero for a face without area.
@@ -119,11 +126,6 @@ impl Air {
         coefficients(None) + own.fold(0.0, f64::max)
     }
 
-    /// Stiffness (N/m) with which fields hold a particle, at most; as it was last observed.
-    pub(crate) fn stiffness_of(&self, particle: usize, scratch: &AirScratch) -> f64 {
-        scratch.pushed.get(particle).map_or(0.0, |pushed| pushed.stiffness)
-    }
-
     /// Damping (N·s/m) that winds and fields put on a particle, at most; as they were last observed.
     pub(crate) fn damping_of(&self, particle: usize, scratch: &AirScratch) -> f64 {
         let of_fields = scratch.pushed.get(particle).map_or(0.0, |pushed| pushed.damping);
@@ -141,13 +143,22 @@ impl Air {
         of_fields + blowing.map(|(wind, _)| of_wind(wind)).sum::<f64>()
     }
 
-    /// Largest damping (1/s) and square of a frequency (1/s²) that fields put on a particle up to `gain` (m/s) faster than
-    /// in `state`.
-    pub(crate) fn field_rates(&self, state: &State, inverse_masses: &[f64], gain: f64) -> [f64; 2] {
+    /// Largest damping (1/s) and square of a frequency (1/s²) that fields put on a particle within so many seconds, in which
+    /// other forces make it up to `gain` (m/s) faster than in `state`, and fields by what they push it with now.
+    pub(crate) fn field_rates(
+        &self,
+        state: &State,
+        inverse_masses: &[f64],
+        [gain, seconds]: [f64; 2],
+    ) -> [f64; 2] {
         if self.fields.is_empty() {
             return [0.0; 2];
         }
         let mut scratch = AirScratch::default();
+        self.observe_flow(state, &mut scratch, gain);
+        let pushes = scratch.pushed.iter().zip(inverse_masses);
+        let pushes = pushes.map(|(pushed, w)| pushed.force.norm() * w);
+        let gain = gain + seconds * pushes.fold(0.0, f64::max);
         self.observe_flow(state, &mut scratch, gain);
         let rates = scratch.pushed.iter().zip(inverse_masses);
         rates.fold([0.0; 2], |[damping, stiffness], (pushed, w)| {

@@ -29,7 +29,7 @@ pub(super) struct Pushed {
 /// The fields of a frame.
 #[derive(Debug, Default)]
 pub(crate) struct Fields {
-    fields: Vec<Field>,
+    each: Vec<Field>,
     frame: i32,
     /// Fastest turn (1/s) by magnetic fields.
     most_turn: f64,
@@ -42,11 +42,11 @@ impl Fields {
     }
 
     pub(super) fn set(&mut self, fields: Vec<Field>) {
-        self.fields = fields;
+        self.each = fields;
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.fields.is_empty()
+        self.each.is_empty()
     }
 
     /// Begins a frame of steps of h seconds.
@@ -64,7 +64,7 @@ impl Fields {
         gain: f64,
     ) -> Pushed {
         let mut push = Push::default();
-        for field in &self.fields {
+        for field in &self.each {
             let random =
                 if field.noise == 0.0 { 0.0 } else { draw(field.seed, self.frame, particle) };
             field.push(&x, &v, random, gain, &mut push);

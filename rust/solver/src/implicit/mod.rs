@@ -382,6 +382,6 @@ fn inertia(system: &System, air: &AirScratch, particle: usize, h: f64) -> f64 {
         return 0.0;
     }
     let damping = system.air_damping[particle] + system.air.damping_of(particle, air);
-    let stiffness = system.air.stiffness_of(particle, air);
+    let stiffness = air.stiffness_of(particle);
     system.masses[particle] / (h * h) + damping / h + stiffness
 }

@@ -147,7 +147,8 @@ def our_forces(ours, x, velocity):
     springs = {"stretch": 0, "shear": 0, "bend": 0, "damping": 0, "limiter": "none"}
     cloth |= {"springs": springs, "collision": {"enabled": False}}
     solver = {"integrator": "forward_euler", "substeps": 1, "allow_unstable": True}
-    scene = {"scene": {"fps": fps, "gravity": [0, 0, 0]}, "cloth": [cloth], "solver": solver}
+    head = {"frames": [1, 2], "fps": fps, "gravity": [0, 0, 0]}
+    scene = {"scene": head, "cloth": [cloth], "solver": solver}
     faces = addon("bridge.mesh_arrays").topology(ours.data)
     text = addon("core.scene_json").encode(scene)
     simulation = addon("native").simulation(text, [(x.copy(), faces.starts, faces.corners)])
@@ -317,7 +318,7 @@ def move_among_fields():
 
     def stopped(obj):
         bake = addon("bridge.bake")
-        steps = bake.Bake(obj, bpy.context.scene).steps()
+        steps = bake.Bake([obj], bpy.context.scene).steps()
         for _ in range(4):
             next(steps).run()
         steps.close()

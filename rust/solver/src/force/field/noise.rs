@@ -78,7 +78,7 @@ mod tests {
     }
 
     /// The same law with other random numbers, in numpy: 0.177, and 0.44 of the correlation left at 0.39 m. That this is
-    /// what Blender's cloth feels is in tests/blender/test_fields.py.
+    /// what Blender's cloth feels is in `tests/blender/test_fields.py`.
     #[test]
     fn turbulence_has_blenders_spread_and_correlation_length() {
         let shift = Vector::new(0.24, 0.24, 0.2);

@@ -111,7 +111,7 @@ impl SpringMaterial {
     }
 }
 
-/// What draws soft pins to their targets, see [`crate::pins`].
+/// What draws soft pins to their targets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PinMaterial {
     /// Stiffness (N/m) of all pins together that edges join, at weight 1; a weight below takes a part of it.

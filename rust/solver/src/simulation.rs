@@ -206,6 +206,7 @@ impl Simulation {
     /// [`Error::TooManySubsteps`] and [`Error::Unstable`] leave the state as it is.
     pub fn advance(&mut self) -> Result<Certificate> {
         self.gather_goals();
+        self.system.air.start_frame(self.frame);
         let mut substeps = self.plan()?;
         self.keep();
         let mut outcome = self.run(substeps, false);
@@ -222,6 +223,7 @@ impl Simulation {
             self.fall_back();
             let first = match self.run(substeps, true) {
                 Outcome::Lost(first) => first,
+                Outcome::Interrupted => return Err(self.interrupted()),
                 _ => last,
             };
             self.fall_back();
@@ -274,7 +276,7 @@ impl Simulation {
             perturb(&mut self.state, &self.cloths, self.settings.perturbation);
         }
         self.pins.start(&mut self.state, duration);
-        self.system.air.start_frame(self.frame, h, self.method.is_implicit());
+        self.system.air.start_steps(h, self.method.is_implicit());
         let way = self.contacts.longest_way(&self.state.velocity, duration);
         let stride = plan::stride(&self.method, way, substeps);
         // No pass has work for more.

@@ -103,9 +103,7 @@ impl System {
         air: &mut AirScratch,
         motion: Motion<'_>,
     ) {
-        if !self.air.is_still() {
-            self.air.observe(at, air);
-        }
+        self.air.observe(at, air);
         let air = &*air;
         let [x, y, z] = out.position.0.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));
         let [u, v, w] = out.velocity.0.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));

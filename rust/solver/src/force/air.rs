@@ -101,9 +101,14 @@ impl Air {
         self.fields.set(fields);
     }
 
-    /// Begins a frame of steps of h seconds.
-    pub(crate) fn start_frame(&mut self, frame: i32, h: f64, is_implicit: bool) {
-        self.fields.start(frame, h, is_implicit);
+    /// Begins the frame after this one.
+    pub(crate) fn start_frame(&mut self, frame: i32) {
+        self.fields.start_frame(frame);
+    }
+
+    /// Begins the steps of a frame, of h seconds each.
+    pub(crate) fn start_steps(&mut self, h: f64, is_implicit: bool) {
+        self.fields.start_steps(h, is_implicit);
     }
 
     /// Largest damping (N·s/m) that the classic law puts on a particle.
@@ -196,7 +201,9 @@ impl Air {
 
     /// Looks at every face in `state`, and where there are fields at every particle.
     pub(crate) fn observe(&self, state: &State, scratch: &mut AirScratch) {
-        if !(self.winds.is_empty() && self.fields.is_empty()) {
+        if self.winds.is_empty() && self.fields.is_empty() {
+            scratch.pushed.clear();
+        } else {
             self.observe_flow(state, scratch, 0.0);
         }
         if !self.pressures.is_empty() {

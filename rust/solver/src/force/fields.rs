@@ -49,10 +49,14 @@ impl Fields {
         self.each.is_empty()
     }
 
-    /// Begins a frame of steps of h seconds.
-    pub(super) fn start(&mut self, frame: i32, h: f64, is_implicit: bool) {
-        let turn = if is_implicit { IMPLICIT_TURN } else { EXPLICIT_TURN };
-        (self.frame, self.most_turn) = (frame, turn / h);
+    /// Begins the frame after this one; turns are limited by steps only.
+    pub(super) fn start_frame(&mut self, frame: i32) {
+        (self.frame, self.most_turn) = (frame, f64::INFINITY);
+    }
+
+    /// Begins the steps of a frame, of h seconds each.
+    pub(super) fn start_steps(&mut self, h: f64, is_implicit: bool) {
+        self.most_turn = if is_implicit { IMPLICIT_TURN } else { EXPLICIT_TURN } / h;
     }
 
     /// What they do to a vertex among its faces; it may become faster by `gain` (m/s) while they act.

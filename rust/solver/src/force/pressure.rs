@@ -194,9 +194,10 @@ impl Pressures {
     /// Takes the values after a part of the frame.
     pub(crate) fn put(&mut self, part: f64) {
         for Filling { from, to, now, .. } in &mut self.fillings {
-            // What arrives is exactly there.
-            let mix =
-                |i: usize| if part >= 1.0 { to[i] } else { from[i] + part * (to[i] - from[i]) };
+            // What arrives is exactly there; between a volume that counts and none there is nothing.
+            let jumps = (from[2] > 0.0) != (to[2] > 0.0);
+            let is_there = part >= 1.0 || jumps;
+            let mix = |i: usize| if is_there { to[i] } else { from[i] + part * (to[i] - from[i]) };
             *now = std::array::from_fn(mix);
         }
     }

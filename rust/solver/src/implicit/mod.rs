@@ -118,7 +118,7 @@ impl Implicit {
         let count = state.len();
         let springs = placed(cloths)
             .flat_map(|(cloth, base)| cloth.springs.iter().map(move |spring| (spring, base)));
-        let taut = Taut::new(cloths, &system.layout, system.gravity.norm());
+        let taut = Taut::new(cloths, &system.layout);
         Self {
             rule,
             memory: Memory::new(state, taut.edge_count()),

@@ -41,10 +41,19 @@ struct Edge {
     allowed: f64,
     /// (N/m)
     kappa: f64,
-    /// Largest tension (N).
+    /// Largest tension (N) but for what weight adds.
     most: f64,
+    /// Of its cloth (kg).
+    mass: f64,
     /// Of its spring.
     place: Place,
+}
+
+impl Edge {
+    /// Largest tension (N) under a gravity (m/s²).
+    fn most(&self, gravity: f64) -> f64 {
+        self.most + MOST_WEIGHTS * gravity * self.mass
+    }
 }
 
 /// An edge that pulls, frozen at one state.
@@ -81,17 +90,17 @@ pub(super) struct Taut {
     pulling: Vec<Pulling>,
     /// Factor of kappa at the last freeze.
     stiffer: f64,
-    /// (m/s²)
+    /// Gravity (m/s²) at the last freeze.
     gravity: f64,
 }
 
 impl Taut {
-    pub(super) fn new(cloths: &[Cloth], layout: &Layout, gravity: f64) -> Self {
+    pub(super) fn new(cloths: &[Cloth], layout: &Layout) -> Self {
         let mut edges = Vec::new();
         let count = cloths.iter().map(|cloth| cloth.positions.len()).sum();
         for (cloth, base) in placed(cloths) {
             let allowed = 1.0 + cloth.material.deformation_rate;
-            let most_by_weight = MOST_WEIGHTS * gravity * cloth.masses.iter().sum::<f64>();
+            let mass = cloth.masses.iter().sum::<f64>();
             if cloth.material.limiter != Limiter::Project {
                 continue;
             }
@@ -105,19 +114,19 @@ impl Taut {
                     ends: ends(spring),
                     allowed: allowed * spring.rest_length,
                     kappa,
-                    most: MOST_STRAIN * kappa * spring.rest_length + most_by_weight,
+                    most: MOST_STRAIN * kappa * spring.rest_length,
+                    mass,
                     place: place?,
                 })
             }));
         }
         let tensions = vec![0.0; edges.len()];
-        Self { edges, tensions, pulling: Vec::new(), stiffer: 1.0, gravity }
+        Self { edges, tensions, pulling: Vec::new(), stiffer: 1.0, gravity: 0.0 }
     }
 
     /// Takes the present rest lengths of a cloth's springs; `base` is the number of its first particle.
     pub(super) fn follow_rest_lengths(&mut self, cloth: &Cloth, base: u32) {
         let allowed = 1.0 + cloth.material.deformation_rate;
-        let most_by_weight = MOST_WEIGHTS * self.gravity * cloth.masses.iter().sum::<f64>();
         let particles = base..base + cloth.positions.len() as u32;
         let mut edges = self.edges.iter_mut().filter(|edge| particles.contains(&edge.ends[0]));
         let mut next = edges.next();
@@ -127,7 +136,7 @@ impl Taut {
                 continue;
             }
             edge.allowed = allowed * spring.rest_length;
-            edge.most = MOST_STRAIN * edge.kappa * spring.rest_length + most_by_weight;
+            edge.most = MOST_STRAIN * edge.kappa * spring.rest_length;
             next = edges.next();
         }
     }
@@ -155,6 +164,8 @@ impl Taut {
         system: &System,
     ) {
         self.stiffer = stiffer;
+        self.gravity = system.gravity.norm();
+        let gravity = self.gravity;
         let chunks = self.tensions.par_chunks_mut(CHUNK).zip(self.edges.par_chunks(CHUNK));
         chunks.zip(last.par_chunks(CHUNK)).for_each(|((tensions, edges), last)| {
             for ((tension, edge), last) in tensions.iter_mut().zip(edges).zip(last) {
@@ -164,7 +175,7 @@ impl Taut {
                     0.0
                 } else {
                     (last + stiffer * edge.kappa * (squared.sqrt() - edge.allowed))
-                        .clamp(0.0, stiffer * edge.most)
+                        .clamp(0.0, stiffer * edge.most(gravity))
                 };
             }
         });
@@ -225,7 +236,8 @@ impl Taut {
             let along: f64 = spans.zip(pulling.normal).map(|(d, n)| d * n).sum();
             let edge = &self.edges[pulling.edge as usize];
             let tension = pulling.tension + self.stiffer * edge.kappa * along;
-            tensions[pulling.edge as usize] = tension.clamp(0.0, self.stiffer * edge.most);
+            tensions[pulling.edge as usize] =
+                tension.clamp(0.0, self.stiffer * edge.most(self.gravity));
         }
     }
 }

@@ -147,10 +147,11 @@ impl Simulation {
         };
         let present: Vec<f64> = own.springs.iter().map(|spring| spring.rest_length).collect();
         rest.put_given(own);
-        let mut limit = Limit::of(own, base, is_held)?;
+        let limit = Limit::of(own, base, is_held);
         for (spring, present) in own.springs.iter_mut().zip(present) {
             spring.rest_length = present;
         }
+        let mut limit = limit?;
         limit.follow_rest_lengths(own, base);
         Some(limit)
     }

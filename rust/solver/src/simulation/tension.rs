@@ -2,6 +2,7 @@
 
 use super::Simulation;
 use crate::certificate::length;
+use crate::law::Spring;
 use crate::law::spring::Law;
 use crate::material::SpringKind;
 
@@ -18,8 +19,10 @@ impl Simulation {
         let is_ours = |(ends, _): &([u32; 2], f64)| particles.contains(&(ends[0] as usize));
         let mut held = self.method.held_edges().filter(is_ours);
         let mut next = held.next();
+        let counts =
+            |spring: &&Spring| matches!(spring.kind, SpringKind::Stretch | SpringKind::Shear);
         let mut tension = vec![0.0_f64; cloth.positions.len()];
-        for spring in cloth.springs.iter().filter(|spring| spring.kind != SpringKind::Bend) {
+        for spring in cloth.springs.iter().filter(counts) {
             let ratio = length(&self.state, spring.ends, base) / spring.rest_length;
             let stiffness = law.stiffness_at(spring.stiffness, ratio);
             let mut pull = stiffness * (ratio - 1.0) * spring.rest_length;

@@ -2,7 +2,8 @@
 
 use boucle_geometry::Vector;
 use boucle_solver::{
-    Cloth, Field, FieldKind, FieldShape, IntegratorKind, Mass, Settings, Simulation,
+    Cloth, Field, FieldKind, FieldShape, IntegratorKind, Mass, Pressure, Settings, Simulation,
+    StepSize,
 };
 
 use crate::sheets::{assert_close, classic, launched, material, run, sheet, simulation, steps_of};
@@ -146,4 +147,41 @@ fn gravity_can_be_changed_from_frame_to_frame() {
     run(&mut simulation, 1);
     assert_close("speed", simulation.velocities(0)[0].z, -4.0 / 24.0, 1e-9);
     assert!(simulation.set_gravity(Vector::z() * 1e7).is_err());
+}
+
+#[test]
+fn a_field_that_is_taken_away_is_gone_also_where_pressure_stays() {
+    let uniform = Pressure { uniform: 0.1, factor: 0.0, target_volume: None, weights: Vec::new() };
+    for pressure in [None, Some(uniform)] {
+        let make = || simulation(Cloth { pressure: pressure.clone(), ..square() }, implicit());
+        let drag = Field { damping: 5.0, ..Field::new(FieldKind::Drag, 1.0) };
+        let (mut whole, mut first) = (make(), make());
+        for simulation in [&mut whole, &mut first] {
+            simulation.set_fields(vec![drag.clone()]).expect("a field");
+            run(simulation, 2);
+            simulation.set_fields(Vec::new()).expect("none");
+        }
+        let mut second = make();
+        second.restore(&first.checkpoint()).expect("a checkpoint");
+        run(&mut whole, 3);
+        run(&mut second, 3);
+        assert_eq!(whole.certificate().hash, second.certificate().hash);
+    }
+}
+
+/// The number of steps depends on nothing that a checkpoint leaves out.
+#[test]
+fn explicit_steps_among_fields_are_as_many_after_a_restart() {
+    let integrator = IntegratorKind::Verlet;
+    let settings = Settings { step_size: StepSize::Auto, ..Settings { integrator, ..implicit() } };
+    let drag = Field { damping: 20.0, noise: 0.8, ..Field::new(FieldKind::Drag, 5.0) };
+    let fields = [drag, Field::new(FieldKind::Magnetic, 8.0)];
+    let mut whole = among(square(), &fields, settings.clone());
+    let mut first = among(square(), &fields, settings.clone());
+    run(&mut first, 3);
+    let mut second = among(square(), &fields, settings);
+    second.restore(&first.checkpoint()).expect("a checkpoint");
+    run(&mut whole, 6);
+    run(&mut second, 3);
+    assert_eq!(whole.certificate(), second.certificate());
 }

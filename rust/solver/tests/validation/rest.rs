@@ -234,3 +234,17 @@ fn a_rest_shape_or_shrink_that_does_not_fit_is_refused() {
     }
     assert!(simulation.cloth(0).springs.iter().all(|s| s.kind != SpringKind::Sewing));
 }
+
+#[test]
+fn a_pin_that_goes_leaves_the_rest_lengths_as_they_are() {
+    for limiter in [Limiter::None, Limiter::Stiffen, Limiter::Provot, Limiter::Project] {
+        let material = SpringMaterial { limiter, ..damped() };
+        let cloth = sheet([SIDE, SIDE], 0.1, &Mass::Density(0.2), material, &[0, SIDE - 1]);
+        let tailoring = Tailoring { shrink: vec![0.3; 81], ..Tailoring::default() };
+        let shrunk = Cloth { tailoring, ..cloth };
+        let mut simulation = simulation(shrunk, still(IntegratorKind::Bdf2, StepSize::Auto));
+        let before = simulation.cloth(0).springs.clone();
+        simulation.release_pins(0, &[0]);
+        assert_eq!(simulation.cloth(0).springs, before, "{limiter:?}");
+    }
+}

@@ -75,6 +75,7 @@ def load_pre(*_: Any) -> None:
     findings.forget()
     takes.forget()
     runtime.rendering.clear()
+    runtime.busy.discard("grab")
 
 
 @persistent

@@ -132,7 +132,7 @@ class Bake:
         held = [pins.Pins(description, cloth, count) for cloth, count in enumerate(counts)]
 
         def moment_at(frame: int) -> Moment:
-            if frame < self._began[1]:
+            if start < frame < self._began[1]:
                 self._began = (time.monotonic(), frame)
             return self._moment(frame, held, met, pushing)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import cache, live, registry, safe_step, slot, target_group
+from . import cache, live, overlay_view, registry, safe_step, slot, target_group, thickness_view
 
 
 def switch(obj: bpy.types.Object, enabled: bool) -> None:
@@ -23,6 +23,8 @@ def switch(obj: bpy.types.Object, enabled: bool) -> None:
         cache.detach(obj)
         slot.remove(obj)
         target_group.remove_if_unused()
+    overlay_view.follow()
+    thickness_view.follow()
 
 
 def store_groups(obj: bpy.types.Object) -> None:

@@ -60,6 +60,8 @@ def record(cloth: bpy.types.Object, scene: bpy.types.Scene) -> dict[str, Any]:
         numbers = _plain(_weights(cloth))
         if out or numbers[GRAVITY] != 1.0:
             out["field weights"] = numbers
+    else:
+        out["field weights"] = None
     return out
 
 
@@ -87,6 +89,7 @@ class Fields:
             self._known
             or cloth.boucle.field_weights.gravity != 1.0
             or animation.moves(cloth, "boucle.field_weights.gravity")
+            or animation.moves(scene, "gravity")
         )
 
     def sample(self, depsgraph: bpy.types.Depsgraph) -> Forces | None:

@@ -27,7 +27,7 @@ from ..core.bake import Step
 from ..core.grip import Grip
 from ..core.live_frames import Frame, LiveFrames
 from ..core.refusal import Refusal
-from . import cache, live, registry, runtime, sampling
+from . import cache, live, registry, runtime, sampling, vertex_attributes
 from . import session as sessions
 from .session import Session
 
@@ -125,7 +125,7 @@ class Grab:
             BoucleError: What the solver said; the last good shape stays.
         """
         obj = self._object()
-        if live.session_of(obj) is not self._session:
+        if live.session_of(obj) is not self._session or obj.mode != "OBJECT":
             return
         try:
             positions, certificate = step.result()
@@ -147,6 +147,7 @@ class Grab:
         self._session.frames = LiveFrames(self.frame, frame, sessions.memory_limit())
         self._session.display.begin_again(obj)
         self._session.display.show(obj, self._session.frames, self.frame)
+        vertex_attributes.show(obj, frame.numbers)
 
     def _object(self) -> bpy.types.Object:
         obj = registry.by_uid(self.uid)

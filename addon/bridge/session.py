@@ -131,8 +131,9 @@ def settings_digest(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
 
 def moment_of(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Moment:
     """Where pins and colliders go now, and what pushes."""
-    pose = sampling.pose(obj, depsgraph, session.pins)
-    return Moment([pose], session.colliders.targets(depsgraph), session.fields.sample(depsgraph))
+    targets, forces = session.colliders.targets(depsgraph), session.fields.sample(depsgraph)
+    pose = sampling.pose(obj, depsgraph, session.pins)  # last: what pins tell is told once
+    return Moment([pose], targets, forces)
 
 
 def read_positions(solver: Any, to_object: points.Affine, vertex_count: int) -> Points:

@@ -12,12 +12,15 @@ import time
 
 import bpy
 
-from ..core import cache_paths, pc2, report, store, takes
+from ..core import cache_paths, pc2, quantity, report, store, takes
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, cannot_write
 from . import cache, live, registry, runtime, settings
 
-_NOT_RESTORED = frozenset({"enabled", "uuid", "bake_record", "take_index", "show_thickness"})
+_NOT_RESTORED = frozenset({
+    "enabled", "uuid", "bake_record", "take_index", "show_thickness", "use_live", "overlay", "overlay_range",
+    "overlay_minimum", "overlay_maximum", "overlay_opacity", *(f"use_{one.key}" for one in quantity.ALL),
+})  # fmt: skip
 """Settings that are not of the simulation."""
 
 _comparisons: dict[int, list[str]] = {}

@@ -77,8 +77,13 @@ class _Grabbing:
         except native.FAILURES as error:
             self.report({"ERROR"}, sentence_of(error))
             return self._end(context, {"CANCELLED"})
+        except Exception:
+            self._end(context, {"CANCELLED"})
+            raise
 
     def _answer(self, context: Context, event: Event) -> set[str]:
+        if self._area.type != "VIEW_3D":
+            return self._end(context, {"FINISHED"})
         if event.type == "TIMER":
             self._move_on(context)
             return {"PASS_THROUGH"}

@@ -114,6 +114,15 @@ impl Pins {
         }
     }
 
+    /// Puts the hard pins for which there is a place there, at rest; soft ones are drawn to where they were.
+    pub(crate) fn place(&mut self, place_of: impl Fn(u32) -> Option<Vector>) {
+        for Pin { particle, held, .. } in self.all.iter_mut().filter(|pin| pin.held.weight >= 1.0) {
+            if let Some(place) = place_of(*particle) {
+                (held.target, held.goal) = (place, place);
+            }
+        }
+    }
+
     /// Sets the weights of the pins for which there is one.
     pub(crate) fn weigh(&mut self, weight_of: impl Fn(u32) -> Option<f64>) {
         for Pin { particle, held, .. } in &mut self.all {

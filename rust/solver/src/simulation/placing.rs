@@ -5,7 +5,8 @@ use boucle_geometry::Vector;
 use super::Simulation;
 
 impl Simulation {
-    /// Puts the vertices of a cloth at these positions (m), at rest. Rest lengths stay.
+    /// Puts the vertices of a cloth at these positions (m), at rest, and its hard pins with them. Rest lengths stay, and so
+    /// does what draws soft pins.
     pub fn set_positions(&mut self, cloth: usize, positions: &[Vector]) {
         let particles = self.particles(cloth);
         for (particle, position) in particles.clone().zip(positions) {
@@ -14,11 +15,10 @@ impl Simulation {
         }
         self.forget_motion();
         let state = &self.state;
-        self.pins.aim(|particle| {
+        self.pins.place(|particle| {
             let particle = particle as usize;
             particles.contains(&particle).then(|| state.position.get(particle))
         });
-        self.pins.end_frame();
         self.gather_goals();
         self.intersect();
     }

@@ -314,3 +314,15 @@ fn weights_and_grips_that_make_no_sense_are_refused() {
     assert!(simulation.grab(0, &[1], &[Vector::x() * f64::NAN], &[1.0]).is_err());
     assert!(simulation.grab(0, &[1, 2], &place, &[1.0]).is_err());
 }
+
+/// Where it hangs at rest it stays when it is put there: what draws its pins stays where it was.
+#[test]
+fn a_cloth_that_is_put_where_it_hangs_stays_there() {
+    let cloth = particle(0.02, 0.25, PinMaterial { stiffness: 40.0, damping_ratio: 1.0 });
+    let mut simulation = simulation(cloth, settings(IntegratorKind::Bdf2));
+    run(&mut simulation, 48);
+    let hanging = simulation.positions(0);
+    simulation.set_positions(0, &hanging);
+    run(&mut simulation, 1);
+    assert_close("z", simulation.positions(0)[0].z, hanging[0].z, 1e-6);
+}

@@ -137,8 +137,8 @@ def test_meshes_and_cloths_must_pair(sheet):
 @pytest.mark.parametrize(
     ("cloth", "match"),
     [
-        ({"grid": {"size": [1, 1], "vertices": [6, 6]}}, "grid or mesh"),
-        ({"mesh": "sheet.obj"}, "grid or mesh"),
+        ({"grid": {"size": [1, 1], "vertices": [6, 6]}}, "grid, mesh or rest"),
+        ({"mesh": "sheet.obj"}, "grid, mesh or rest"),
         ({"pins": ["top"]}, "names only for a grid"),
         ({"pins": {"vertices": [36]}}, r"cloth\.sheet\.pins\.vertices\.0 = 36; accepted: 0 to 35"),
         ({"pins": {"near": [9, 9, 9], "radius": 0.1}}, r"pins\.near"),

@@ -175,7 +175,7 @@ def add_from_the_menu() -> Step:
     yield 0.5
     yield key("shift+a")
     yield 1.0
-    yield {"do": "type", "text": "boucle"}
+    yield {"do": "type", "text": "sheet"}
     yield 1.0
     yield key("Return")
     yield 1.5

@@ -77,10 +77,9 @@ def build(obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.De
     solver = make()
     pushing, held = Fields(obj, scene), Pins(description, 0, len(obj.data.vertices))
     pose = sampling.pose(obj, depsgraph, held)
-    start = Moment([pose], met.targets(depsgraph), pushing.sample(depsgraph))
-    start.aim(solver)
+    Moment([pose], met.targets(depsgraph), pushing.sample(depsgraph)).aim(solver)
     limit = memory_limit()
-    if settle.run(solver, scene_json.settling(description), [len(obj.data.vertices)], start):
+    if settle.run(solver, scene_json.settling(description), [len(obj.data.vertices)]):
         local = read_positions(solver, to_object, len(obj.data.vertices))
     first = Frame(local, solver.certificate(), read_numbers(solver, obj))
     shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)

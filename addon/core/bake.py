@@ -174,7 +174,7 @@ def bake(
         if not (resume and stores.resume(simulation)):
             moment = moment_at(plan.start)
             moment.aim(simulation)
-            yield from _settle(simulation, stores, moment)
+            yield from _settle(simulation, stores)
             stores.begin()
             begin = Step(plan.start, lambda: _read(simulation, simulation.certificate(), buffers))
             begin.run()
@@ -200,10 +200,10 @@ def bake(
             stores.close()
 
 
-def _settle(simulation: Simulation, stores: Stores, start: Moment) -> Iterator[Step]:
+def _settle(simulation: Simulation, stores: Stores) -> Iterator[Step]:
     """A step for every frame of settling; nothing on disk is touched before they are done."""
     counts = [store.plan.vertex_count for store in stores.each]
-    settle = Settle(simulation, stores.plan.settling, counts, start)
+    settle = Settle(simulation, stores.plan.settling, counts)
     while not settle.is_done:
         step = Step(simulation.frame + 1, settle.advance)
         yield step

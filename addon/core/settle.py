@@ -22,15 +22,9 @@ class Settling(NamedTuple):
 class Settle:
     """A simulation that begins so many frames before the start frame, on its way there."""
 
-    def __init__(
-        self, simulation: Any, settling: Settling, vertex_counts: Sequence[int], start: Any
-    ) -> None:
-        """Nothing moves before `advance`.
-
-        The counts are those of the cloths; `start.aim` tells a simulation where pins and colliders are at the start frame.
-        """
+    def __init__(self, simulation: Any, settling: Settling, vertex_counts: Sequence[int]) -> None:
+        """Nothing moves before `advance`; the counts are those of the cloths."""
         self._simulation = simulation
-        self._start = start
         self._left = settling.frames
         self._energy = 0.0
         self._damped = settling.damped
@@ -43,8 +37,6 @@ class Settle:
 
     def advance(self) -> None:
         """Simulate one frame; pins and colliders stay where they are."""
-        # Cloth that is stopped loses the goals of its soft pins: they are given anew.
-        self._start.aim(self._simulation)
         energy = self._simulation.advance()["kinetic_energy"]
         self._left -= 1
         if not self._damped:
@@ -57,9 +49,9 @@ class Settle:
         self._energy = energy
 
 
-def run(simulation: Any, settling: Settling, vertex_counts: Sequence[int], start: Any) -> bool:
+def run(simulation: Any, settling: Settling, vertex_counts: Sequence[int]) -> bool:
     """Bring a simulation to its start frame at once; whether the cloth has moved."""
-    settle = Settle(simulation, settling, vertex_counts, start)
+    settle = Settle(simulation, settling, vertex_counts)
     while not settle.is_done:
         settle.advance()
     return settling.frames > 0

@@ -13,13 +13,6 @@ from . import cache, live, mesh_arrays, rest, shown, slot
 
 REST_KEY = "Rest"
 """Shape key that keeps the rest shape while the mesh begins elsewhere."""
-REST_SETTING = "rest_shape_key"
-"""The setting that names it."""
-
-
-def has_rest_setting(obj: bpy.types.Object) -> bool:
-    """Whether a cloth can have another rest shape than the one it begins with."""
-    return hasattr(obj.boucle, REST_SETTING)
 
 
 def as_rest(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
@@ -49,7 +42,7 @@ def as_start(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
     positions = _shown(obj, scene)
     _refuse_others(obj)
     keys = obj.data.shape_keys
-    named = getattr(obj.boucle, REST_SETTING)
+    named = obj.boucle.rest_shape_key
     if keys is not None and [key.name for key in keys.key_blocks[1:]] != [named]:
         raise Refusal(
             f'"{obj.name}" has shape keys of its own, which would not follow: remove them first'
@@ -61,7 +54,7 @@ def as_start(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
         key = obj.shape_key_add(name=REST_KEY, from_mix=False)
         key.value = 0.0  # 1 in Blender 5.0
         key.data.foreach_set("co", resting)
-        setattr(obj.boucle, REST_SETTING, key.name)
+        obj.boucle.rest_shape_key = key.name
     obj.data.shape_keys.reference_key.data.foreach_set("co", positions)
     mesh_arrays.write_positions(obj.data, positions)
     return text

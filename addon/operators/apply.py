@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from bpy.props import StringProperty
 from bpy.types import Context, Operator
 
-from .. import native
 from .._identifiers import Operators
 from ..bridge import apply
-from ..core.refusal import sentence_of
+from .attempt import Attempt
 from .polling import can_simulate
 
 
-class _Applies:
+class _Applies(Attempt):
     """An operator that makes something of the frame that is shown."""
 
     @classmethod
@@ -26,16 +23,6 @@ class _Applies:
             cls.poll_message_set("Go to Object Mode first")
             return False
         return True
-
-    def act(self, kind: str, action: Callable[[], str]) -> set[str]:
-        """Do it and say what became of it, or why it cannot be done."""
-        try:
-            text = action()
-        except native.FAILURES as error:
-            self.report({"ERROR"}, sentence_of(error))
-            return {"CANCELLED"}
-        self.report({kind}, text)
-        return {"FINISHED"}
 
 
 class BOUCLE_OT_apply_as_rest(_Applies, Operator):
@@ -49,7 +36,7 @@ class BOUCLE_OT_apply_as_rest(_Applies, Operator):
         """Move the mesh."""
         obj, scene = context.object, context.scene
         words = f'"{obj.name}" rests in the shape of frame {scene.frame_current}: '
-        return self.act("WARNING", lambda: words + apply.as_rest(obj, scene))
+        return self.attempt(lambda: words + apply.as_rest(obj, scene), "WARNING")
 
 
 class BOUCLE_OT_apply_as_start(_Applies, Operator):
@@ -59,21 +46,11 @@ class BOUCLE_OT_apply_as_start(_Applies, Operator):
     bl_label = "Start Pose"
     bl_options = {"REGISTER", "UNDO"}
 
-    @classmethod
-    def poll(cls, context: Context) -> bool:
-        """Only where a cloth can begin in another shape than that of its rest."""
-        if not super().poll(context):
-            return False
-        if not apply.has_rest_setting(context.object):
-            cls.poll_message_set("This version begins every simulation in the rest shape")
-            return False
-        return True
-
     def execute(self, context: Context) -> set[str]:
         """Move the mesh and keep the rest shape as a key."""
         obj, scene = context.object, context.scene
         words = f'"{obj.name}" begins in the shape of frame {scene.frame_current}: '
-        return self.act("WARNING", lambda: words + apply.as_start(obj, scene))
+        return self.attempt(lambda: words + apply.as_start(obj, scene), "WARNING")
 
 
 class BOUCLE_OT_apply_as_shape_key(_Applies, Operator):
@@ -91,7 +68,7 @@ class BOUCLE_OT_apply_as_shape_key(_Applies, Operator):
         """Add the key."""
         obj, scene = context.object, context.scene
         words = f'"{obj.name}" has a new shape key: '
-        return self.act("INFO", lambda: words + apply.as_shape_key(obj, scene, self.key_name))
+        return self.attempt(lambda: words + apply.as_shape_key(obj, scene, self.key_name), "INFO")
 
 
 CLASSES = (BOUCLE_OT_apply_as_rest, BOUCLE_OT_apply_as_start, BOUCLE_OT_apply_as_shape_key)

@@ -7,14 +7,13 @@ from collections.abc import Callable
 import bpy
 from bpy.types import Context, Operator
 
-from .. import native
 from .._identifiers import Operators
 from ..bridge import cache, live, saving
-from ..core.refusal import sentence_of
+from .attempt import Attempt
 from .polling import can_simulate
 
 
-class _OfBake:
+class _OfBake(Attempt):
     """An operator that acts on the active cloth's bake."""
 
     @classmethod
@@ -25,12 +24,7 @@ class _OfBake:
     def act(self, obj: bpy.types.Object, action: Callable[[bpy.types.Object], None]) -> set[str]:
         """Do it, or report why it cannot be done."""
         live.drop(obj)
-        try:
-            action(obj)
-        except native.FAILURES as error:
-            self.report({"ERROR"}, sentence_of(error))
-            return {"CANCELLED"}
-        return {"FINISHED"}
+        return self.attempt(lambda: action(obj))
 
 
 class BOUCLE_OT_free_bake(_OfBake, Operator):

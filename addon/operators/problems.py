@@ -9,6 +9,7 @@ from bpy.types import Context, Event, Operator
 from .._identifiers import Operators
 from ..bridge import collider_setup, findings, selection
 from ..core.refusal import Refusal, sentence_of
+from .attempt import Attempt
 from .polling import has_cloth
 
 
@@ -47,7 +48,7 @@ class BOUCLE_OT_select_problem(Operator):
         return {"FINISHED"}
 
 
-class BOUCLE_OT_make_collider(Operator):
+class BOUCLE_OT_make_collider(Attempt, Operator):
     """Give an object that the cloth passes through Collision physics, so that the cloth lies on it"""
 
     bl_idname = Operators.MAKE_COLLIDER
@@ -75,15 +76,8 @@ class BOUCLE_OT_make_collider(Operator):
 
     def execute(self, context: Context) -> set[str]:
         """Add the modifier, or say why not."""
-        try:
-            made = collider_setup.make(
-                context.object, context.scene, self.object_name, self.thickness
-            )
-        except Refusal as refusal:
-            self.report({"ERROR"}, sentence_of(refusal))
-            return {"CANCELLED"}
-        self.report({"INFO"}, made)
-        return {"FINISHED"}
+        obj, scene, name = context.object, context.scene, self.object_name
+        return self.attempt(lambda: collider_setup.make(obj, scene, name, self.thickness))
 
 
 CLASSES = (BOUCLE_OT_select_problem, BOUCLE_OT_make_collider)

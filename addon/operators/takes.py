@@ -2,35 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from bpy.props import BoolProperty, IntProperty, StringProperty
 from bpy.types import Context, Operator
 
-from .. import native
 from .._identifiers import Operators
 from ..bridge import takes
-from ..core.refusal import sentence_of
+from .attempt import Attempt
 from .polling import can_simulate
 
 
-class _OfTakes:
+class _OfTakes(Attempt):
     """An operator on the takes of the active cloth."""
 
     @classmethod
     def poll(cls, context: Context) -> bool:
         """Only a cloth of this file, while no bake runs."""
         return can_simulate(cls, context)
-
-    def act(self, action: Callable[[], str]) -> set[str]:
-        """Do it and say what was done, or why it cannot be."""
-        try:
-            text = action()
-        except native.FAILURES as error:
-            self.report({"ERROR"}, sentence_of(error))
-            return {"CANCELLED"}
-        self.report({"INFO"}, text)
-        return {"FINISHED"}
 
 
 class _OfOneTake(_OfTakes):
@@ -71,7 +58,7 @@ class BOUCLE_OT_add_take(_OfTakes, Operator):
     def execute(self, context: Context) -> set[str]:
         """Copy the files."""
         obj = context.object
-        return self.act(
+        return self.attempt(
             lambda: (
                 f'"{obj.name}": the bake is kept as '
                 f'"{takes.add(obj, self.take_name or takes.free_name(obj)).name}"'
@@ -94,7 +81,7 @@ class BOUCLE_OT_restore_take(_OfOneTake, Operator):
     def execute(self, context: Context) -> set[str]:
         """Copy the files back."""
         obj, number = context.object, self.number(context)
-        return self.act(lambda: takes.restore(obj, number, self.with_settings))
+        return self.attempt(lambda: takes.restore(obj, number, self.with_settings))
 
 
 class BOUCLE_OT_remove_take(_OfOneTake, Operator):
@@ -113,7 +100,7 @@ class BOUCLE_OT_remove_take(_OfOneTake, Operator):
             takes.remove(obj, number)
             return f'"{obj.name}": the take "{name}" is removed'
 
-        return self.act(action)
+        return self.attempt(action)
 
 
 class BOUCLE_OT_compare_take(_OfOneTake, Operator):
@@ -126,7 +113,7 @@ class BOUCLE_OT_compare_take(_OfOneTake, Operator):
     def execute(self, context: Context) -> set[str]:
         """Compare the reports."""
         obj, number = context.object, self.number(context)
-        return self.act(lambda: "; ".join(takes.compare(obj, number)))
+        return self.attempt(lambda: "; ".join(takes.compare(obj, number)))
 
 
 CLASSES = (

@@ -12,8 +12,8 @@ from mathutils import Vector
 from ..core import blender_cloth, points
 from ..core.blender_cloth import Reading
 from ..core.refusal import Refusal
-from . import animation, mesh_arrays, rest
-from .settings import ANY
+from . import animation, mesh_arrays, rest, vertex_groups
+from .vertex_groups import ANY
 
 
 def find(obj: bpy.types.Object) -> bpy.types.ClothModifier | None:
@@ -75,7 +75,7 @@ def _read(obj: bpy.types.Object, modifier: bpy.types.ClothModifier) -> Reading:
 
 def _soft_pins(obj: bpy.types.Object, modifier: bpy.types.ClothModifier) -> int:
     group = modifier.settings.vertex_group_mass
-    every, firm = (len(mesh_arrays.group_vertices(obj, group, weight)) for weight in (ANY, 1.0))
+    every, firm = (len(vertex_groups.vertices(obj, group, weight)) for weight in (ANY, 1.0))
     return every - firm
 
 

@@ -1,8 +1,7 @@
-"""Arrays of a mesh: positions, topology and vertex groups."""
+"""Arrays of a mesh: positions and topology."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import bpy
@@ -56,25 +55,6 @@ def edges(mesh: bpy.types.Mesh) -> Points:
     ends = points.empty("i", 2 * len(mesh.edges))
     mesh.edges.foreach_get("vertices", ends)
     return ends
-
-
-def group_vertices(obj: bpy.types.Object, name: str, threshold: float) -> Sequence[int]:
-    """The vertices whose weight in a vertex group is at least threshold, in order."""
-    return list(group_weights(obj, name, threshold))
-
-
-def group_weights(obj: bpy.types.Object, name: str, threshold: float) -> dict[int, float]:
-    """The same vertices and their weights."""
-    group = obj.vertex_groups.get(name)
-    if group is None:
-        return {}
-    index = group.index
-    return {
-        vertex.index: element.weight
-        for vertex in obj.data.vertices
-        for element in vertex.groups
-        if element.group == index and element.weight >= threshold
-    }
 
 
 def world_matrix(obj: Any) -> Affine:

@@ -8,18 +8,15 @@ import bpy
 
 from ..core import points, scene_json
 from ..core.bake import Hold
-from . import animation, mesh_arrays
+from . import animation, vertex_groups
 
 HARD = 0.999
 """From this weight on a vertex is held firmly, as in Blender's own cloth."""
 
-ANY = 1e-6
-"""From this weight on a vertex of the group is a pin."""
-
 
 def painted(obj: bpy.types.Object, name: str) -> dict[int, float]:
     """The pins of a vertex group by vertex, in order: weights above 0, of which the highest are 1."""
-    found = mesh_arrays.group_weights(obj, name, ANY)
+    found = vertex_groups.weights(obj, name)
     return {vertex: 1.0 if weight >= HARD else weight for vertex, weight in found.items()}
 
 

@@ -8,14 +8,10 @@ from typing import Any
 import bpy
 
 from ..core import drift, scene_json
-from ..core.refusal import Refusal
 from ..core.scene_json import Groups, World
-from . import animation, colliders, mesh_arrays, pins, shape
+from . import animation, colliders, mesh_arrays, pins, shape, vertex_groups
 
 _DATA = frozenset({"POINTER", "COLLECTION"})
-
-ANY = 1e-6
-"""From this weight on a vertex is taken for one of a group that only includes or excludes."""
 
 
 def values(obj: bpy.types.Object) -> dict[str, Any]:
@@ -48,7 +44,7 @@ def groups(obj: bpy.types.Object) -> Groups:
         Refusal: A group is named that the object does not have.
     """
     settings = obj.boucle
-    _require(obj, "Pin Group", settings.pin_group)
+    vertex_groups.require(obj, "Pin Group", settings.pin_group)
     held = pins.painted(obj, settings.pin_group) if settings.pin_group else {}
     wind = _vertices(obj, "Wind Group", settings.wind_group) if settings.use_wind else None
     not_self = not_objects = None
@@ -102,14 +98,5 @@ def record(
 
 
 def _vertices(obj: bpy.types.Object, label: str, name: str) -> list[int] | None:
-    _require(obj, label, name)
-    return list(mesh_arrays.group_vertices(obj, name, ANY)) if name else None
-
-
-def _require(obj: bpy.types.Object, label: str, name: str) -> None:
-    if name and obj.vertex_groups.get(name) is None:
-        known = ", ".join(f'"{group.name}"' for group in obj.vertex_groups) or "none"
-        raise Refusal(
-            f'"{obj.name}": {label} "{name}" is not a vertex group of the object '
-            f"(it has {known}): choose one of them or clear the field"
-        )
+    vertex_groups.require(obj, label, name)
+    return vertex_groups.vertices(obj, name) if name else None

@@ -10,7 +10,7 @@ from mathutils import Vector
 from ..core import mesh_check, points
 from ..core.mesh_check import Problem, Severity
 from ..core.points import Points
-from . import colliders, mesh_arrays, rest, settings, slot
+from . import colliders, mesh_arrays, rest, slot, vertex_groups
 
 UNEVEN = 1e-3
 """Relative difference of an object's scales from which on it is told."""
@@ -61,7 +61,7 @@ def _support(obj: bpy.types.Object, scene: bpy.types.Scene, world: Points) -> It
     group = obj.boucle.pin_group
     if group and obj.vertex_groups.get(group) is None:
         return  # said as an error of its own
-    if group and mesh_arrays.group_vertices(obj, group, settings.ANY):
+    if group and vertex_groups.vertices(obj, group):
         return
     why = f'no vertex is in the Pin Group "{group}"' if group else "no Pin Group is set"
     if not scene.use_gravity or scene.gravity.length == 0.0:

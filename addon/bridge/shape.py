@@ -10,7 +10,7 @@ from ..core import points, shape
 from ..core.points import Affine, Points
 from ..core.refusal import Refusal
 from ..core.shape import Shape, ShapeGroups
-from . import animation, mesh_arrays
+from . import animation, mesh_arrays, vertex_groups
 
 SHRINK = ("shrink_min", "shrink_max")
 PRESSURE = ("uniform_pressure_force", "pressure_factor", "target_volume")
@@ -36,18 +36,10 @@ def weights(obj: bpy.types.Object, label: str, name: str) -> list[float]:
     """The weight of every vertex in a group; none for no name."""
     if not name:
         return []
-    group = obj.vertex_groups.get(name)
-    if group is None:
-        known = ", ".join(f'"{group.name}"' for group in obj.vertex_groups) or "none"
-        raise Refusal(
-            f'"{obj.name}": {label} "{name}" is not a vertex group of the object '
-            f"(it has {known}): choose one of them or clear the field"
-        )
+    vertex_groups.require(obj, label, name)
     found = [0.0] * len(obj.data.vertices)
-    for vertex in obj.data.vertices:
-        for element in vertex.groups:
-            if element.group == group.index:
-                found[vertex.index] = min(1.0, max(0.0, shape.decimal(element.weight)))
+    for vertex, weight in vertex_groups.weights(obj, name, 0.0).items():
+        found[vertex] = min(1.0, shape.decimal(weight))
     return found
 
 

@@ -148,6 +148,17 @@ class Simulation:
             SceneError: A key or a value is not accepted; the fields before then stay.
         """
 
+    def set_wind_velocity(self, wind: int, velocity: tuple[float, float, float]) -> None:
+        """Let a wind blow with this velocity (m/s) from the next frame on.
+
+        Args:
+            wind: Its number among the winds of the scene's `[[force]]`, in their order.
+            velocity: Of the air, world space, up to 1e4 m/s along an axis.
+
+        Raises:
+            SceneError: There is no such wind, or the velocity is not accepted; the one before then stays.
+        """
+
     def set_gravity(self, gravity: tuple[float, float, float]) -> None:
         """Take this gravity (m/s²) in the place of the one before, for all frames until it is told anew."""
 

@@ -54,6 +54,22 @@ def test_fields_that_are_not_accepted_leave_those_before(sheet, fields, match):
     assert speeds(simulation)[7][1] > 0.4
 
 
+def test_a_wind_blows_as_it_is_told_from_frame_to_frame(sheet):
+    blow = {"kind": "wind", "coefficient": 1e-3, "velocity": [0, 1, 0]}
+    steady, turned = free(sheet, blow), free(sheet, {**blow, "velocity": [0, 0, 0]}, blow)
+    turned.set_wind_velocity(1, (0.0, 3.0, 0.0))
+    turned.advance()
+    turned.set_wind_velocity(1, (0.0, -1.0, 0.0))
+    steady.advance()
+    assert speeds(turned)[7][1] == pytest.approx(3 * speeds(steady)[7][1], rel=1e-6)
+    before = speeds(turned)[7][1]
+    turned.advance()
+    assert speeds(turned)[7][1] < 0.9 * before
+    for wrong, match in (((2, (0.0, 0.0, 0.0)), "number of a wind"), ((0, (0.0, 2e4, 0.0)), "1e4")):
+        with pytest.raises(boucle_core.SceneError, match=match):
+            turned.set_wind_velocity(*wrong)
+
+
 def test_gravity_must_be_three_finite_numbers(simulation):
     with pytest.raises(boucle_core.SceneError, match=r"gravity .* is inf; accepted: -1e6 to 1e6"):
         simulation.set_gravity((0.0, 0.0, float("inf")))

@@ -175,6 +175,16 @@ impl Simulation {
         self.with(py, |assembly| Ok(assembly.simulation.set_fields(fields)?))
     }
 
+    fn set_wind_velocity(
+        &mut self,
+        py: Python<'_>,
+        wind: usize,
+        velocity: [f64; 3],
+    ) -> PyResult<()> {
+        let velocity = Vector::from(velocity);
+        self.with(py, |assembly| Ok(assembly.simulation.set_wind_velocity(wind, velocity)?))
+    }
+
     fn set_gravity(&mut self, py: Python<'_>, gravity: [f64; 3]) -> PyResult<()> {
         self.with(py, |assembly| Ok(assembly.simulation.set_gravity(Vector::from(gravity))?))
     }

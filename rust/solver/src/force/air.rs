@@ -101,6 +101,16 @@ impl Air {
         self.fields.set(fields);
     }
 
+    /// Lets a wind blow with this velocity (m/s) from now on.
+    pub(crate) fn set_wind_velocity(&mut self, wind: usize, velocity: Vector) {
+        self.winds[wind].0.velocity = velocity;
+    }
+
+    /// How many winds blow.
+    pub(crate) fn wind_count(&self) -> usize {
+        self.winds.len()
+    }
+
     /// Begins the frame after this one.
     pub(crate) fn start_frame(&mut self, frame: i32) {
         self.fields.start_frame(frame);

@@ -69,13 +69,7 @@ impl Wind {
             }
             WindLaw::Face { air_density } => at_least_zero("air_density (kg/m³)", air_density)?,
         }
-        if let Some(&speed) = self.velocity.iter().find(|speed| !(speed.abs() <= 1e4)) {
-            return Err(Error::OutOfDomain {
-                quantity: "wind velocity (m/s)".to_owned(),
-                value: speed,
-                domain: "-1e4 to 1e4",
-            });
-        }
+        check_velocity(&self.velocity)?;
         let (cloths, vertices) = match &self.region {
             Region::Everywhere | Region::Box(_) => return Ok(()),
             Region::Vertices(vertices) => (cloths, vertices.as_slice()),
@@ -103,6 +97,17 @@ impl Wind {
             }
         }
         Ok(())
+    }
+}
+
+/// Refuses the velocity (m/s) of a wind that no simulation takes.
+pub(crate) fn check_velocity(velocity: &Vector) -> Result<()> {
+    match velocity.iter().find(|speed| !(speed.abs() <= 1e4)) {
+        None => Ok(()),
+        Some(&value) => {
+            let quantity = "wind velocity (m/s)".to_owned();
+            Err(Error::OutOfDomain { quantity, value, domain: "-1e4 to 1e4" })
+        }
     }
 }
 

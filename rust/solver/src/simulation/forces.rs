@@ -4,7 +4,7 @@ use boucle_geometry::Vector;
 
 use super::Simulation;
 use crate::error::{Error, Result};
-use crate::force::Field;
+use crate::force::{Field, check_wind_velocity};
 
 impl Simulation {
     /// Takes these force fields in the place of those before, from the next frame on. They stand still during a frame.
@@ -14,6 +14,21 @@ impl Simulation {
     pub fn set_fields(&mut self, fields: Vec<Field>) -> Result<()> {
         fields.iter().try_for_each(Field::check)?;
         self.system.air.set_fields(fields);
+        Ok(())
+    }
+
+    /// Lets a wind, by its number in the order in which they were given, blow with this velocity (m/s) from the next frame on.
+    ///
+    /// # Errors
+    /// [`Error::OutOfDomain`] for a number that no wind has, and beyond 1e4 m/s along an axis.
+    pub fn set_wind_velocity(&mut self, wind: usize, velocity: Vector) -> Result<()> {
+        if wind >= self.system.air.wind_count() {
+            let quantity = "the number of a wind".to_owned();
+            let domain = "that of one of the winds of the scene, counted from 0";
+            return Err(Error::OutOfDomain { quantity, value: wind as f64, domain });
+        }
+        check_wind_velocity(&velocity)?;
+        self.system.air.set_wind_velocity(wind, velocity);
         Ok(())
     }
 

@@ -21,10 +21,10 @@ from ..core.store import Plan, Store, Stores
 from . import (
     cache,
     colliders,
-    fields,
     live,
     pins,
     preflight,
+    record,
     registry,
     runtime,
     sampling,
@@ -35,6 +35,7 @@ from . import (
     vertex_attributes,
 )
 from .fields import Fields
+from .winds import Winds
 
 
 @dataclass(frozen=True)
@@ -118,23 +119,27 @@ class Bake:
         description = self._describe(cloths, scene)
         self._restrict(description)
         met = colliders.Colliders(cloths, scene, self._depsgraph_of(cloths[0]))
-        pushing = Fields(cloths[0], scene)
+        pushing, blowing = Fields(cloths[0], scene), Winds(cloths, description)
         meshes = [simulation.mesh(obj, self._start(obj)) for obj in cloths]
         rests = [shape.rest(obj, self._matrix(obj)) for obj in cloths]
         make = simulation.maker(description, meshes, self.options.threads, met.arrays, rests)
         build = Step(start, make)
-        records = self._records(cloths, scene, description)
+        records = self._records(cloths, scene)
         yield build
         solver = build.result()
         self._interrupter = solver.interrupter()
         self.stores = self._make_stores(description, records, solver)
-        counts = [record["vertices"] for record in records]
+        counts = [own["vertices"] for own in records]
         held = [pins.Pins(description, cloth, count) for cloth, count in enumerate(counts)]
 
         def moment_at(frame: int) -> Moment:
             if start < frame < self._began[1]:
                 self._began = (time.monotonic(), frame)
-            return self._moment(frame, held, met, pushing)
+            moment = self._moment(frame, held, met)
+            depsgraph = self._depsgraph_of(self._objects()[0])
+            return moment._replace(
+                forces=pushing.sample(depsgraph), winds=blowing.sample(depsgraph)
+            )
 
         try:
             yield from core_bake.bake(
@@ -178,46 +183,42 @@ class Bake:
         description["scene"]["frames"][1] = end
 
     def _records(
-        self,
-        cloths: Sequence[bpy.types.Object],
-        scene: bpy.types.Scene,
-        description: dict[str, Any],
+        self, cloths: Sequence[bpy.types.Object], scene: bpy.types.Scene
     ) -> list[dict[str, Any]]:
-        """What the bake remembers of each cloth, described alone, as it is when it is compared later."""
+        """What the bake remembers of each cloth."""
         kept = self.options.frames
         cache.ensure_identity()
         known = {obj.boucle.uuid: obj.name for obj in cloths}
         records = []
         for obj in cloths:
-            if len(cloths) > 1:
-                description = settings.describe(obj, scene, with_groups=True)
-            record = settings.record(obj, description, fields.record(obj, scene))
+            made = record.of(obj, scene, others=cloths)
             first = kept[0] if kept else obj.boucle.frame_start
-            record.update(first=first, end=self.end, is_part=kept is not None)
+            made.update(first=first, end=self.end, is_part=kept is not None)
             if len(cloths) > 1:
-                record["together"] = {u: name for u, name in known.items() if u != obj.boucle.uuid}
-            records.append(record)
+                made["together"] = {u: name for u, name in known.items() if u != obj.boucle.uuid}
+                made["order"] = list(known)
+            records.append(made)
         return records
 
     def _make_stores(
         self, description: dict[str, Any], records: list[dict[str, Any]], solver: Any
     ) -> Stores:
-        left_out = {"end": None, "together": None}
-        remembered = [{**record, **left_out} for record in records]
+        left_out = {"end": None, "together": None, "order": None}
+        remembered = [{**own, **left_out} for own in records]
         digest = drift.whole_digest(remembered[0] if len(records) == 1 else {"all": remembered})
         stores = []
-        for number, (obj, record) in enumerate(zip(self._objects(), records, strict=True)):
+        for number, (obj, own) in enumerate(zip(self._objects(), records, strict=True)):
             plan = Plan(
                 start=description["scene"]["frames"][0],
-                first=record["first"],
+                first=own["first"],
                 end=self.end,
-                vertex_count=record["vertices"],
+                vertex_count=own["vertices"],
                 digest=digest,
                 keeps=vertex_attributes.wanted(obj),
                 settling=scene_json.settling(description),
             )
             rows = self._report(obj, description, solver.spring_count(number))
-            rows.record = record
+            rows.record = own
             files = self.options.files[number] if self.options.files else cache.own_files(obj)
             stores.append(Store(files, plan, rows, keeps_previous=self.options.files is None))
         return Stores(stores)
@@ -240,9 +241,7 @@ class Bake:
             rows.head["together"] = self.names
         return rows
 
-    def _moment(
-        self, frame: int, held: Sequence[pins.Pins], met: colliders.Colliders, pushing: Fields
-    ) -> Moment:
+    def _moment(self, frame: int, held: Sequence[pins.Pins], met: colliders.Colliders) -> Moment:
         self._go_to(frame)
         cloths = self._objects()
         depsgraphs = [self._depsgraph_of(obj) for obj in cloths]
@@ -250,7 +249,7 @@ class Bake:
             sampling.pose(obj, depsgraph, own)
             for obj, depsgraph, own in zip(cloths, depsgraphs, held, strict=True)
         ]
-        return Moment(poses, met.targets(depsgraphs[0]), pushing.sample(depsgraphs[0]))
+        return Moment(poses, met.targets(depsgraphs[0]))
 
     def _attach(self) -> None:
         """Play what is there, if it is the objects' own caches; a folder elsewhere is left alone."""

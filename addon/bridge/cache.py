@@ -13,7 +13,7 @@ from ..core import cache_paths, drift, pc2, report
 from ..core.cache_paths import CacheFiles
 from ..core.progress import size
 from ..core.refusal import Refusal, cannot_write
-from . import fields, registry, runtime, settings, slot
+from . import record, registry, runtime, slot
 
 
 def absolute(obj: bpy.types.Object, path: str) -> str:
@@ -53,12 +53,12 @@ def ensure_identity() -> None:
         taken.add(obj.boucle.uuid)
 
 
-def attach(obj: bpy.types.Object, pc2_path: str, record: dict[str, Any]) -> None:
-    """Let the object play a bake; record is what the bake remembers."""
+def attach(obj: bpy.types.Object, pc2_path: str, remembered: dict[str, Any]) -> None:
+    """Let the object play a bake, and keep what it remembers."""
     found = slot.ensure(obj)
     path = cache_paths.relative_to_blend(pc2_path, bpy.data.filepath)
-    slot.play(found.cache, path, int(record["first"]))
-    obj.boucle.bake_record = json.dumps(record)
+    slot.play(found.cache, path, int(remembered["first"]))
+    obj.boucle.bake_record = json.dumps(remembered)
     obj.update_tag()
 
 
@@ -76,10 +76,10 @@ def reattach(obj: bpy.types.Object) -> bool:
     if not obj.boucle.uuid:
         return False
     files = own_files(obj)
-    record = report.read(files.report).get("bake")
-    if pc2.check(files.pc2, len(obj.data.vertices)) or not record:
+    remembered = report.read(files.report).get("bake")
+    if pc2.check(files.pc2, len(obj.data.vertices)) or not remembered:
         return False
-    attach(obj, files.pc2, record)
+    attach(obj, files.pc2, remembered)
     return True
 
 
@@ -107,10 +107,10 @@ def restore_previous(obj: bpy.types.Object) -> None:
             _swap(path, kept)
     except OSError as error:
         raise cannot_write(files.pc2, error) from error
-    record = report.read(files.report).get("bake")
-    if not record:
+    remembered = report.read(files.report).get("bake")
+    if not remembered:
         raise Refusal(f'"{files.report}" is missing or damaged: bake again')
-    attach(obj, files.pc2, record)
+    attach(obj, files.pc2, remembered)
 
 
 def has_previous(obj: bpy.types.Object) -> bool:
@@ -151,27 +151,32 @@ def _drift_of_others(
     obj: bpy.types.Object, scene: bpy.types.Scene, then: dict[str, Any], in_full: bool
 ) -> list[str]:
     """The cloths that were baked together with this one and are not as they were."""
+    found = _baked_together(obj, then)
+    words = []
+    for key, name in then.get("together", {}).items():
+        theirs = record_of(found[key]) if key in found else {}
+        is_same = bool(theirs) and theirs.get("bake") == then.get("bake")
+        if not is_same or _own_drift(found[key], scene, theirs, in_full):
+            words.append(f'the cloth "{found[key].name if key in found else name}"')
+    return words
+
+
+def _baked_together(obj: bpy.types.Object, then: dict[str, Any]) -> dict[str, bpy.types.Object]:
+    """The cloths that were baked together with this one and are still there, by their identity."""
     names = then.get("together", {})
     if not names:
-        return []
-    found = {o.boucle.uuid: o for o in registry.all_cloths() if o.library == obj.library}
-    words = []
-    for key, name in names.items():
-        record = record_of(found[key]) if key in found else {}
-        is_same = bool(record) and record.get("bake") == then.get("bake")
-        if not is_same or _own_drift(found[key], scene, record, in_full):
-            words.append(f'the cloth "{name}"')
-    return words
+        return {}
+    cloths = (other for other in registry.all_cloths() if other.library == obj.library)
+    return {other.boucle.uuid: other for other in cloths if other.boucle.uuid in names}
 
 
 def _own_drift(
     obj: bpy.types.Object, scene: bpy.types.Scene, then: dict[str, Any], in_full: bool
 ) -> list[str]:
     try:
-        description = settings.describe(obj, scene, with_groups=in_full)
+        now = record.of(obj, scene, list(_baked_together(obj, then).values()), in_full)
     except Refusal as refusal:
         return [str(refusal)]
-    now = settings.record(obj, description, fields.record(obj, scene), with_faces=in_full)
     return drift.differences(then, now)
 
 
@@ -191,11 +196,11 @@ def status(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
     if trouble:
         return trouble
     header = pc2.read_header(path)
-    record = record_of(obj)
-    first = int(record.get("first", header.first_frame))
+    known = record_of(obj)
+    first = int(known.get("first", header.first_frame))
     last = first + header.sample_count - 1
     text = f"Baked: frames {first} to {last}, {size(os.path.getsize(path))}"
-    end = int(record.get("end", last)) if record.get("is_part") else obj.boucle.frame_end
+    end = int(known.get("end", last)) if known.get("is_part") else obj.boucle.frame_end
     if last < end:
         text = f"Partly baked: frames {first} to {last} of {end}; Resume goes on"
     changed = drift_of(obj, scene, in_full=False)

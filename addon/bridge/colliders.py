@@ -61,10 +61,16 @@ def evaluated_for(
     return sorted(found, key=lambda obj: obj.name_full)
 
 
-def describe(obj: bpy.types.Object) -> CollisionObject:
-    """An object's Collision physics as the scene description takes it."""
+def describe(obj: bpy.types.Object, frame: int | None = None) -> CollisionObject:
+    """An object's Collision physics as the scene description takes it: now, or as it is at a frame."""
     settings = obj.collision
-    return CollisionObject(obj.name_full, settings.thickness_outer, settings.cloth_friction)
+    if frame is None:
+        return CollisionObject(obj.name_full, settings.thickness_outer, settings.cloth_friction)
+    numbers = (
+        animation.value_at(obj, f"collision.{name}", frame)
+        for name in ("thickness_outer", "cloth_friction")
+    )
+    return CollisionObject(obj.name_full, *numbers)
 
 
 def signature(cloth: bpy.types.Object, scene: bpy.types.Scene) -> tuple[object, ...]:

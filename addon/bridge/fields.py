@@ -14,7 +14,7 @@ import bpy
 from ..core import fields
 from ..core.fields import Field, Forces
 from ..core.refusal import Refusal
-from . import animation, colliders, registry, sampling
+from . import animation, colliders, registry, sampling, settings
 
 GRAVITY = "gravity"
 """The field weight that scales the scene's gravity."""
@@ -89,7 +89,7 @@ class Fields:
             self._known
             or cloth.boucle.field_weights.gravity != 1.0
             or animation.moves(cloth, "boucle.field_weights.gravity")
-            or animation.moves(scene, "gravity")
+            or settings.gravity_moves(scene)
         )
 
     def sample(self, depsgraph: bpy.types.Depsgraph) -> Forces | None:

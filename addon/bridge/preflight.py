@@ -26,8 +26,8 @@ from . import (
 
 SAMPLED_ONCE = (
     "stretch", "shear", "bend", "damping", "damping_stretch", "damping_shear", "damping_bend",
-    "air_damping", "deformation_rate", "density", "mass_per_vertex", "wind_velocity",
-    "wind_coefficient", "wind_air_density", "thickness", "friction", "pin_damping",
+    "air_damping", "deformation_rate", "density", "mass_per_vertex", "wind_coefficient",
+    "wind_air_density", "thickness", "friction", "pin_damping",
 )  # fmt: skip
 """Settings that may be animated in the file, of which the solver takes the first frame's value."""
 
@@ -105,7 +105,7 @@ def _warnings(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem
     if animated:
         yield _warning(
             f'"{obj.name}": {", ".join(animated)} is animated: only its value at the start frame '
-            "counts yet"
+            "counts"
         )
     yield from _unsupported(obj, scene)
     yield from setup_check.problems(obj, scene)

@@ -17,6 +17,7 @@ from . import (
     colliders,
     display,
     fields,
+    record,
     rest,
     runtime,
     sampling,
@@ -29,6 +30,7 @@ from . import (
 from .colliders import Colliders
 from .fields import Fields
 from .pins import Pins
+from .winds import Winds
 
 
 @dataclass
@@ -42,6 +44,7 @@ class Session:
     pins: Pins
     colliders: Colliders
     fields: Fields
+    winds: Winds
     display: display.Display
     basis: tuple[object, ...]
     """What must not change while the session lives; looked at at every frame."""
@@ -76,8 +79,10 @@ def build(obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.De
     )
     solver = make()
     pushing, held = Fields(obj, scene), Pins(description, 0, len(obj.data.vertices))
+    blowing = Winds([obj], description)
     pose = sampling.pose(obj, depsgraph, held)
-    Moment([pose], met.targets(depsgraph), pushing.sample(depsgraph)).aim(solver)
+    forces = pushing.sample(depsgraph)
+    Moment([pose], met.targets(depsgraph), forces, blowing.sample(depsgraph)).aim(solver)
     limit = memory_limit()
     if settle.run(solver, scene_json.settling(description), [len(obj.data.vertices)]):
         local = read_positions(solver, to_object, len(obj.data.vertices))
@@ -90,6 +95,7 @@ def build(obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.De
         pins=held,
         colliders=met,
         fields=pushing,
+        winds=blowing,
         display=shown,
         basis=basis_of(obj, scene),
         settings=settings_digest(obj, scene),
@@ -111,7 +117,7 @@ def basis_of(obj: bpy.types.Object, scene: bpy.types.Scene) -> tuple[object, ...
         len(mesh.vertices),
         len(mesh.loops),
         obj.boucle.frame_start,
-        settings.world(scene),
+        settings.steady_world(scene),
         display.may_write(obj),
         colliders.signature(obj, scene),
         fields.signature(obj, scene),
@@ -121,18 +127,16 @@ def basis_of(obj: bpy.types.Object, scene: bpy.types.Scene) -> tuple[object, ...
 def settings_digest(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
     """A digest of the settings, without the vertices of groups; empty if they contradict each other."""
     try:
-        description = settings.describe(obj, scene, with_groups=False)
+        return drift.whole_digest(record.of(obj, scene, in_full=False))
     except Refusal:
         return ""
-    pushing = fields.record(obj, scene)
-    return drift.whole_digest(settings.record(obj, description, pushing, with_faces=False))
 
 
 def moment_of(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Moment:
     """Where pins and colliders go now, and what pushes."""
     targets, forces = session.colliders.targets(depsgraph), session.fields.sample(depsgraph)
     pose = sampling.pose(obj, depsgraph, session.pins)  # last: what pins tell is told once
-    return Moment([pose], targets, forces)
+    return Moment([pose], targets, forces, session.winds.sample(depsgraph))
 
 
 def read_positions(solver: Any, to_object: points.Affine, vertex_count: int) -> Points:

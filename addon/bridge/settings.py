@@ -7,9 +7,9 @@ from typing import Any
 
 import bpy
 
-from ..core import drift, scene_json
+from ..core import scene_json
 from ..core.scene_json import Groups, World
-from . import animation, colliders, mesh_arrays, pins, shape, vertex_groups
+from . import animation, colliders, pins, shape, vertex_groups
 
 _DATA = frozenset({"POINTER", "COLLECTION"})
 
@@ -26,6 +26,15 @@ def values(obj: bpy.types.Object) -> dict[str, Any]:
     return out
 
 
+def values_at_start(obj: bpy.types.Object) -> dict[str, Any]:
+    """Every setting as it is at the cloth's start frame, wherever the scene stands."""
+    out = values(obj)
+    for name in animation.moving(obj, "boucle."):
+        if name in out:
+            out[name] = animation.value_at(obj, f"boucle.{name}", obj.boucle.frame_start)
+    return out
+
+
 def is_implicit(integrator: str) -> bool:
     """Whether an integrator is stable at any step."""
     return integrator in scene_json.IMPLICIT
@@ -35,6 +44,17 @@ def world(scene: bpy.types.Scene) -> World:
     """Gravity (m/s²) and frames a second of a scene."""
     gravity = tuple(scene.gravity) if scene.use_gravity else (0.0, 0.0, 0.0)
     return World(gravity, scene.render.fps / scene.render.fps_base)
+
+
+def gravity_moves(scene: bpy.types.Scene) -> bool:
+    """Whether the gravity of a scene changes in time."""
+    return animation.moves(scene, "gravity") or animation.moves(scene, "use_gravity")
+
+
+def steady_world(scene: bpy.types.Scene) -> World:
+    """The world of a scene, but for a gravity that changes in time: it is told frame by frame."""
+    now = world(scene)
+    return now._replace(gravity=(0.0, 0.0, 0.0)) if gravity_moves(scene) else now
 
 
 def groups(obj: bpy.types.Object) -> Groups:
@@ -63,38 +83,23 @@ def describe(
     scene: bpy.types.Scene,
     with_groups: bool,
     others: Sequence[bpy.types.Object] = (),
+    at_start: bool = False,
 ) -> dict[str, Any]:
     """The scene description of one cloth among its colliders; groups take long to read and may be left out.
 
-    Others are simulated with it: it meets them as cloths, not as colliders.
+    Others are simulated with it: it meets them as cloths, not as colliders. Settings that are animated are those of the
+    present frame or, to compare them, those of the start frame.
     """
     found = groups(obj) if with_groups else Groups([], None)
     met = [thing for thing in colliders.find(obj, scene) if thing not in others]
-    things = [colliders.describe(thing) for thing in met]
-    given = values(obj)
+    frame = obj.boucle.frame_start if at_start else None
+    things = [colliders.describe(thing, frame) for thing in met]
+    given = values_at_start(obj) if at_start else values(obj)
+    around = steady_world(scene) if at_start else world(scene)
     if animation.moves(obj, "boucle.pin_stiffness"):
         given.pop("pin_stiffness")  # told frame by frame
-    return scene_json.describe(obj.name, given, world(scene), found, things, bool(others))
-
-
-def record(
-    obj: bpy.types.Object,
-    description: dict[str, Any],
-    fields: dict[str, Any],
-    with_faces: bool = True,
-) -> dict[str, Any]:
-    """What a bake with this description and these force fields remembers of its cloth.
-
-    The digest of its faces takes long and may be left out.
-    """
-    mesh = obj.data
-    faces = mesh_arrays.topology(mesh).digest() if with_faces else ""
-    description = shape.steady(obj, description)
-    made = drift.record(description, len(mesh.vertices), faces, fields)
-    strength = pins.constant_strength(obj)
-    if strength < 1.0:
-        made["settings"]["cloth.pin_strength"] = strength
-    return made
+    meets = any(colliders.meet(obj, other) for other in others if other != obj)
+    return scene_json.describe(obj.name, given, around, found, things, meets)
 
 
 def _vertices(obj: bpy.types.Object, label: str, name: str) -> list[int] | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import bpy
 
@@ -46,10 +46,21 @@ def resumed(obj: bpy.types.Object) -> list[bpy.types.Object]:
         Refusal: One of them is gone.
     """
     names = cache.record_of(obj).get("together", {})
+    cache.ensure_identity()
     found = {other.boucle.uuid: other for other in registry.local_cloths()}
     for uuid, name in names.items():
         if uuid not in found:
             raise Refusal(
                 f'"{obj.name}" was baked together with "{name}", which is gone: bake from the start'
             )
-    return sorted({obj, *(found[uuid] for uuid in names)}, key=lambda each: each.name)
+    return in_order({obj, *(found[uuid] for uuid in names)})
+
+
+def in_order(cloths: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Cloths in the order of the bake that is to go on, whatever they are called now; by name those of none."""
+
+    def place(obj: bpy.types.Object) -> tuple[int, str]:
+        order = cache.record_of(obj).get("order", [])
+        return order.index(obj.boucle.uuid) if obj.boucle.uuid in order else len(order), obj.name
+
+    return sorted(cloths, key=place)

@@ -34,6 +34,7 @@ class Simulation(Protocol):
     def set_collider_targets(self, collider: int, targets: Points) -> None: ...
     def set_gravity(self, gravity: tuple[float, float, float]) -> None: ...
     def set_fields(self, fields: str) -> None: ...
+    def set_wind_velocity(self, wind: int, velocity: tuple[float, float, float]) -> None: ...
     def advance(self) -> dict[str, Any]: ...
     def certificate(self, cloth: int | None = None) -> dict[str, Any]: ...
     def set_positions(self, cloth: int, positions: Points) -> None: ...
@@ -82,12 +83,16 @@ class Moment(NamedTuple):
     colliders: Sequence[Points] = ()
     forces: Forces | None = None
     """None where gravity stays as it is and there are no fields."""
+    winds: Sequence[tuple[int, tuple[float, float, float]]] = ()
+    """Numbers of winds that change, and their velocities (m/s)."""
 
     def aim(self, simulation: Simulation) -> None:
         """Tell a simulation what goes where in the next frame, and what pushes."""
         if self.forces is not None:
             simulation.set_gravity(self.forces.gravity)
             simulation.set_fields(self.forces.fields)
+        for wind, velocity in self.winds:
+            simulation.set_wind_velocity(wind, velocity)
         for cloth, pose in enumerate(self.poses):
             pose.aim(simulation, cloth)
         for number, targets in enumerate(self.colliders):

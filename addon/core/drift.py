@@ -42,7 +42,7 @@ _VERTICES = {
 """Lists of vertices by the end of their key."""
 
 
-_NAMED = ("collider ", "force field ", "field weights")
+_NAMED = ("collider ", "force field ", "field weights", "keys of ", "cloths met")
 """Beginnings of the keys that are words as they stand."""
 
 

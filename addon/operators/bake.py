@@ -111,6 +111,8 @@ class _Baking:
     def _make_bakes(self, context: Context) -> tuple[list[Bake], list[str]]:
         options = Options(resume=self.resume)
         groups, notes = self.groups(context)
+        if self.resume:
+            groups = [together.in_order(cloths) for cloths in groups]
         return [Bake(cloths, context.scene, options) for cloths in groups], notes
 
     def _pull(self, context: Context) -> bool:

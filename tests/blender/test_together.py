@@ -75,6 +75,13 @@ def collide(folder):
     lower.boucle.stretch = 50.0
     out["changed"] = [lower.boucle.status, upper.boucle.status, ghost.boucle.status]
     lower.boucle.stretch = 500.0
+    out["other contact"] = []
+    for name, value in (("thickness", 0.03), ("friction", 0.9), ("object_collision", False)):
+        before = getattr(lower.boucle, name)
+        setattr(lower.boucle, name, value)
+        out["other contact"].append([lower.boucle.status, upper.boucle.status])
+        setattr(lower.boucle, name, before)
+    out["as before"] = [lower.boucle.status, upper.boucle.status]
     bpy.context.view_layer.objects.active = lower
     bpy.ops.boucle.bake()
     out["rebaked"] = upper.boucle.status
@@ -105,6 +112,11 @@ def test_cloths_that_meet_are_baked_together_and_lie_on_each_other(blender):
     assert "changed since: stretch stiffness" in result["changed"][0]
     assert 'outdated, changed since: the cloth "Lower"' in result["changed"][1]
     assert "outdated" not in result["changed"][2]
+    words = ("collision thickness", "collision friction", "cloths met")
+    for (own, others), word in zip(result["other contact"], words, strict=True):
+        assert word in own.partition("outdated, changed since: ")[2], own
+        assert 'the cloth "Lower"' in others.partition("outdated, changed since: ")[2], others
+    assert all("outdated" not in status for status in result["as before"])
     assert 'the cloth "Lower"' in result["rebaked"]
     assert "outdated" not in result["restored"]
 
@@ -152,6 +164,18 @@ def resume_together(folder):
     upper.name = "Uppermost"
     bpy.ops.boucle.bake_all(resume=True)
     out["renamed"] = [pc2_of(obj).read_bytes() for obj in (lower, upper)] == whole
+    for resume_all in (False, True):
+        stop(6)
+        lower.name, upper.name = "Zero", "Above" if resume_all else "About"
+        bpy.context.view_layer.objects.active = upper
+        if resume_all:
+            bpy.ops.boucle.bake_all(resume=True)
+        else:
+            bpy.ops.boucle.bake(resume=True)
+        bytes_now = [pc2_of(obj).read_bytes() for obj in (lower, upper)]
+        out["renamed"] = out["renamed"] and bytes_now == whole
+        out["renamed status"] = [obj.boucle.status for obj in (lower, upper)]
+        lower.name, upper.name = "Lower", "Upper"
     stop(6)
     lower.boucle.bend = 3.0
     out["changed"] = refusal_of(bpy.ops.boucle.bake_all, resume=True)
@@ -174,7 +198,9 @@ def resume_together(folder):
 def test_a_bake_of_several_cloths_goes_on_with_all_of_them_or_not_at_all(blender):
     result = blender.run(resume_together, folder=blender.folder)
     assert result["lowest"] > -0.3 and result["above"] > 0.03
-    assert result["colliders"] == ['collider "Ball"', 'collider "Lower"']
+    assert result["colliders"] == ['collider "Ball"']
+    assert all(status.startswith("Baked: frames 1 to 14") for status in result["renamed status"])
+    assert not any("outdated" in status for status in result["renamed status"])
     title, told = result["told"]
     assert title == "Lower and Upper"
     assert told == '"Lower", "Upper" were stopped; frames up to 6 are kept, Resume goes on'

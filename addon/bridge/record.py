@@ -1,0 +1,58 @@
+"""What a bake remembers of a cloth, and what it would remember now: both made here, so that they can be compared.
+
+Neither depends on the frame at which the scene stands. Of an animated setting that is taken once the value at the start frame
+is remembered; of one that is followed from frame to frame, its keys.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import bpy
+
+from ..core import drift
+from . import animation, colliders, fields, mesh_arrays, pins, settings, shape
+
+FOLLOWED = (
+    "pin_strength", "pin_stiffness", *shape.SHRINK, *shape.PRESSURE, "wind_velocity",
+)  # fmt: skip
+"""Settings that are followed where they are animated. All others are taken once, at the start frame."""
+
+
+def of(
+    obj: bpy.types.Object,
+    scene: bpy.types.Scene,
+    others: Sequence[bpy.types.Object] = (),
+    in_full: bool = True,
+) -> dict[str, Any]:
+    """What a bake remembers of a cloth that is simulated with others.
+
+    The vertices of groups and the digest of its faces take long and may be left out.
+
+    Raises:
+        Refusal: The settings contradict each other.
+    """
+    mesh, others = obj.data, [other for other in others if other != obj]
+    description = settings.describe(obj, scene, in_full, others, at_start=True)
+    faces = mesh_arrays.topology(mesh).digest() if in_full else ""
+    steady = shape.steady(obj, description)
+    made = drift.record(steady, len(mesh.vertices), faces, fields.record(obj, scene))
+    strength = pins.constant_strength(obj)
+    if strength < 1.0:
+        made["settings"]["cloth.pin_strength"] = strength
+    if others:
+        met = (other.boucle.uuid for other in others if colliders.meet(obj, other))
+        made["settings"]["cloths met"] = sorted(met)
+    made["settings"].update(_keys(obj, scene))
+    return made
+
+
+def _keys(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[tuple[str, str]]:
+    """Digests of the keys of what is followed, by what it is called."""
+    for name in FOLLOWED:
+        if animation.moves(obj, f"boucle.{name}"):
+            yield f"keys of {name.replace('_', ' ')}", animation.keys(obj, f"boucle.{name}")
+    for name in ("gravity", "use_gravity"):
+        if animation.moves(scene, name):
+            yield f"keys of {name.replace('_', ' ')}", animation.keys(scene, name)

@@ -5,23 +5,16 @@ Blender does not know the paths in our settings: when the file is saved elsewher
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import time
 
 import bpy
 
-from ..core import cache_paths, pc2, quantity, report, store, takes
+from ..core import cache_paths, pc2, report, store, takes
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, cannot_write
-from . import cache, live, registry, runtime, settings
-
-_NOT_RESTORED = frozenset({
-    "enabled", "uuid", "bake_record", "take_index", "show_thickness", "use_live", "overlay", "overlay_range",
-    "overlay_minimum", "overlay_maximum", "overlay_opacity", *(f"use_{one.key}" for one in quantity.ALL),
-})  # fmt: skip
-"""Settings that are not of the simulation."""
+from . import cache, live, registry, runtime, take_settings
 
 _comparisons: dict[int, list[str]] = {}
 """What was last compared, by `session_uid`."""
@@ -46,7 +39,7 @@ def add(obj: bpy.types.Object, name: str) -> bpy.types.PropertyGroup:
     take.date = time.strftime("%Y-%m-%d %H:%M")
     take.note = takes.note(cache.record_of(obj))
     take.path = cache_paths.relative_to_blend(files.pc2, bpy.data.filepath)
-    take.settings = json.dumps(_restorable(obj))
+    take.settings = take_settings.keep(obj.boucle)
     obj.boucle.take_index = len(obj.boucle.takes) - 1
     return take
 
@@ -81,10 +74,15 @@ def restore(obj: bpy.types.Object, number: int, with_settings: bool) -> str:
     except OSError as error:
         raise cannot_write(own.pc2, error) from error
     _copy(files, own)
+    said = f'"{obj.name}" plays "{take.name}"'
     if with_settings:
-        _set(obj, take)
+        gone = take_settings.give(obj.boucle, take.settings, take.name)
+        said += " with its settings"
+        if gone:
+            names = ", ".join(f'"{name}"' for name in gone)
+            said += f", but for collections that are gone: {names}"
     cache.attach(obj, own.pc2, record)
-    return f'"{obj.name}" plays "{take.name}"' + (" with its settings" if with_settings else "")
+    return said
 
 
 def remove(obj: bpy.types.Object, number: int) -> None:
@@ -94,6 +92,12 @@ def remove(obj: bpy.types.Object, number: int) -> None:
         Refusal: There is no such take, or its files cannot be removed.
     """
     take = chosen(obj, number)
+    linked = obj.override_library.reference if obj.override_library else None
+    if linked is not None and number < len(linked.boucle.takes):
+        raise Refusal(
+            f'"{obj.name}": the take "{take.name}" comes from the linked file '
+            f'"{linked.library.filepath}": remove it there'
+        )
     files = files_of(obj, take)
     users = [
         other
@@ -152,8 +156,13 @@ def chosen(obj: bpy.types.Object, number: int) -> bpy.types.PropertyGroup:
 
 
 def files_of(obj: bpy.types.Object, take: bpy.types.PropertyGroup) -> CacheFiles:
-    """The files of a take."""
-    return cache_paths.files_of(cache.absolute(obj, take.path))
+    """The files of a take. An override has those of the linked file, too, named from there."""
+    path = cache.absolute(obj, take.path)
+    linked = obj.override_library.reference if obj.override_library else None
+    if linked is not None and take.path.startswith("//") and not os.path.isfile(path):
+        theirs = cache.absolute(linked, take.path)
+        path = theirs if os.path.isfile(theirs) else path
+    return cache_paths.files_of(path)
 
 
 def is_same_file(one: str, other: str) -> bool:
@@ -196,24 +205,6 @@ def forget() -> None:
     """Another file is loaded."""
     _comparisons.clear()
     _places.clear()
-
-
-def _restorable(obj: bpy.types.Object) -> dict[str, object]:
-    return {key: value for key, value in settings.values(obj).items() if key not in _NOT_RESTORED}
-
-
-def _set(obj: bpy.types.Object, take: bpy.types.PropertyGroup) -> None:
-    """Give the cloth the settings of a take; those that this version does not have are left."""
-    try:
-        kept = json.loads(take.settings or "{}")
-    except ValueError as error:
-        raise Refusal(f'the settings of the take "{take.name}" are damaged: {error}') from error
-    known = settings.values(obj)
-    for key, value in kept.items():
-        if key in known and key not in _NOT_RESTORED:
-            now = tuple(value) if isinstance(value, list) else value
-            if known[key] != now:
-                setattr(obj.boucle, key, now)
 
 
 def _copy(source: CacheFiles, target: CacheFiles) -> None:

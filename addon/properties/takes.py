@@ -42,7 +42,7 @@ class TakeProperties:
 
     takes: CollectionProperty(
         type=BOUCLE_PG_take, name="Takes", description="Results that are kept under a name",
-        override=OVERRIDABLE,
+        override={*OVERRIDABLE, "USE_INSERTION"},
     )  # fmt: skip
     take_index: IntProperty(
         name="Take", description="The chosen take, counted from 0", default=0, min=0, max=100_000,

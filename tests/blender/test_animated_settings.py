@@ -51,7 +51,9 @@ def follow_wind():
                 break
         steps.close()
         if stopped:
-            resumed = addon("bridge.bake").Bake(cloths, scene, addon("bridge.bake").Options(resume=True))
+            resumed = addon("bridge.bake").Bake(
+                cloths, scene, addon("bridge.bake").Options(resume=True)
+            )
             for step in resumed.steps():
                 step.run()
         scene.frame_set(8)

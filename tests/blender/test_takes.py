@@ -125,3 +125,97 @@ def test_takes_are_kept_restored_compared_and_removed(blender):
     assert found["forgotten"] == "" and found["again"]
     assert found["removed"] == [True, False, 1, 1]
     assert "is missing" in found["missing"] and "has 1 take," in found["beyond"]
+
+
+def keep_all_settings():
+    import bpy
+    from cloths import add_cloth
+
+    obj, ops = add_cloth(end=3), bpy.ops.boucle
+    ground, fans = bpy.data.collections.new("Ground"), bpy.data.collections.new("Fans")
+    for collection in (ground, fans):
+        bpy.context.scene.collection.children.link(collection)
+    settings = obj.boucle
+    settings.field_weights.gravity = 0.25
+    settings.field_weights.collection = fans
+    settings.collision_collection = ground
+    ops.bake()
+    ops.add_take()
+    settings.field_weights.gravity = 1.0
+    settings.field_weights.collection = None
+    settings.collision_collection = None
+    ops.bake()
+    ops.add_take()
+    ops.restore_take(index=0)
+    weights = settings.field_weights
+    out = [weights.gravity, weights.collection == fans, settings.collision_collection == ground]
+    out.append(settings.status)
+    ops.restore_take(index=1)
+    out.append([weights.gravity, weights.collection is None, settings.collision_collection is None])
+    bpy.data.collections.remove(fans)
+    from cloths import addon
+
+    return [*out, addon("bridge.takes").restore(obj, 0, True)]
+
+
+def test_a_take_keeps_field_weights_and_collections(new_blender):
+    gravity, fans, ground, status, plain, said = new_blender.run(keep_all_settings)
+    assert gravity == 0.25 and fans and ground
+    assert "outdated" not in status
+    assert plain == [1.0, True, True]
+    assert said.endswith('with its settings, but for collections that are gone: "Fans"')
+
+
+def keep_takes_of_an_override(folder):
+    import os
+
+    import bpy
+    from cloths import add_cloth, addon, refusal_of
+
+    ops, takes = bpy.ops.boucle, addon("bridge.takes")
+    obj = add_cloth(columns=4, rows=4, end=3)
+    obj.name = "Costume"
+    library, shot = (os.path.join(folder, *name) for name in (("props", "a.blend"), ("b.blend",)))
+    os.makedirs(os.path.dirname(library))
+    bpy.ops.wm.save_as_mainfile(filepath=library)
+    ops.bake()
+    ops.add_take(take_name="Theirs")
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=False)
+    with bpy.data.libraries.load(library, link=True) as (_, to):
+        to.objects = ["Costume"]
+    bpy.context.scene.collection.objects.link(to.objects[0])
+    own = to.objects[0].override_create(remap_local_usages=True)
+    own.override_library.is_system_override = False
+    bpy.ops.wm.save_as_mainfile(filepath=shot)
+    bpy.context.view_layer.objects.active = own
+    for name, stretch in (("First", 800.0), ("Second", 900.0)):
+        own.boucle.stretch = stretch
+        ops.bake()
+        ops.add_take(take_name=name)
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.wm.open_mainfile(filepath=shot)
+    own = next(one for one in bpy.data.objects if one.library is None and one.name == "Costume")
+    bpy.context.view_layer.objects.active = own
+    out = {"names": [take.name for take in own.boucle.takes], "played": []}
+    for number in range(len(own.boucle.takes)):
+        ops.restore_take(index=number)
+        out["played"].append([own.boucle.stretch, own.boucle.status])
+    out["theirs"] = refusal_of(ops.remove_take, index=0)
+    out["kept"] = os.path.isfile(takes.files_of(own, own.boucle.takes[0]).pc2)
+    ops.remove_take(index=1)
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.wm.open_mainfile(filepath=shot)
+    own = next(one for one in bpy.data.objects if one.library is None and one.name == "Costume")
+    out["left"] = [take.name for take in own.boucle.takes]
+    return out
+
+
+def test_an_override_keeps_takes_of_its_own_beside_those_of_the_linked_file(blender):
+    found = blender.run(keep_takes_of_an_override, folder=blender.folder)
+    assert found["names"] == ["Theirs", "First", "Second"]
+    assert [stretch for stretch, _ in found["played"]] == [500.0, 800.0, 900.0]
+    assert all(status.startswith("Baked") for _, status in found["played"])
+    assert not any("outdated" in status for _, status in found["played"])
+    assert "comes from the linked file" in found["theirs"] and found["kept"]
+    assert found["left"] == ["Theirs", "Second"]

@@ -139,6 +139,13 @@ def problem(obj: bpy.types.Object) -> str:
     return f'"{obj.name}": {found}' if found else ""
 
 
+def frame_range(obj: bpy.types.Object) -> tuple[int, int]:
+    """The first and the last frame of the bake that the object plays, which must be there."""
+    header = pc2.read_header(played_path(obj))
+    first = int(record_of(obj).get("first", header.first_frame))
+    return first, first + header.sample_count - 1
+
+
 def drift_of(obj: bpy.types.Object, scene: bpy.types.Scene, in_full: bool) -> list[str]:
     """What changed since the bake, in words; in_full compares groups and faces too, which takes longer."""
     then = record_of(obj)
@@ -195,10 +202,8 @@ def status(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
     trouble = problem(obj)
     if trouble:
         return trouble
-    header = pc2.read_header(path)
     known = record_of(obj)
-    first = int(known.get("first", header.first_frame))
-    last = first + header.sample_count - 1
+    first, last = frame_range(obj)
     text = f"Baked: frames {first} to {last}, {size(os.path.getsize(path))}"
     end = int(known.get("end", last)) if known.get("is_part") else obj.boucle.frame_end
     if last < end:

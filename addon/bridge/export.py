@@ -7,7 +7,6 @@ from contextlib import contextmanager
 
 import bpy
 
-from ..core import pc2
 from ..core.refusal import Refusal, sentence_of
 from . import cache, registry
 
@@ -20,11 +19,7 @@ def exportable(scene: bpy.types.Scene) -> list[bpy.types.Object]:
 
 def frames(cloths: Sequence[bpy.types.Object]) -> tuple[int, int]:
     """The first and the last frame that the bakes hold."""
-    ranges = []
-    for obj in cloths:
-        header = pc2.read_header(cache.played_path(obj))
-        first = int(cache.record_of(obj).get("first", header.first_frame))
-        ranges.append((first, first + header.sample_count - 1))
+    ranges = [cache.frame_range(obj) for obj in cloths]
     return min(first for first, _ in ranges), max(last for _, last in ranges)
 
 

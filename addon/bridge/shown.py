@@ -34,8 +34,7 @@ def at_frame(obj: bpy.types.Object, frame: int) -> Points | None:
     if path:
         if cache.problem(obj):
             return None
-        header = pc2.read_header(path)
-        first = int(cache.record_of(obj).get("first", header.first_frame))
-        return pc2.read_sample(path, min(max(frame - first, 0), header.sample_count - 1))
+        first, last = cache.frame_range(obj)
+        return pc2.read_sample(path, min(max(frame, first), last) - first)
     session = live.session_of(obj)
     return session.frames.nearest(frame).positions if session is not None else None

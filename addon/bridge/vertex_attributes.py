@@ -28,16 +28,16 @@ def wanted(obj: bpy.types.Object) -> tuple[str, ...]:
 def of_bake(obj: bpy.types.Object, frame: int) -> Numbers:
     """What the bake keeps of a frame; beyond its ends, of the first or last one, as the bake is played."""
     path = cache.played_path(obj)
-    record = cache.record_of(obj)
-    if not path or not record or cache.problem(obj):
+    keys = wanted(obj)
+    if not path or not keys or cache.problem(obj):
         return {}
-    count = len(obj.data.vertices)
+    count, first = len(obj.data.vertices), cache.frame_range(obj)[0]
     files = cache_paths.files_of(path)
     out: dict[str, Points] = {}
-    for key in wanted(obj):
+    for key in keys:
         file = getattr(files, key)
         last = vertex_file.row_count(file, count) - 1
-        row = vertex_file.read(file, min(max(frame - int(record["first"]), 0), last), count)
+        row = vertex_file.read(file, min(max(frame - first, 0), last), count)
         if row is not None:
             out[key] = row
     return out

@@ -9,16 +9,15 @@ from bpy.props import BoolProperty, StringProperty
 from bpy.types import Context, Operator
 from bpy_extras.io_utils import ExportHelper
 
-from .. import native
 from .._identifiers import Operators
 from ..bridge import export
-from ..core.refusal import sentence_of
+from .attempt import Attempt
 from .polling import has_cloth, is_free
 
 Write = Callable[[list[bpy.types.Object], str], tuple[int, int]]
 
 
-class _Export(ExportHelper):
+class _Export(Attempt, ExportHelper):
     """What both exports share: which cloths, and what became of them."""
 
     all_cloths: BoolProperty(
@@ -42,15 +41,15 @@ class _Export(ExportHelper):
 
     def write(self, context: Context, write: Write) -> set[str]:
         """Export, or report why it cannot be done."""
-        cloths = export.exportable(context.scene) if self.all_cloths else [context.object]
-        try:
-            first, last = write(cloths or [context.object], self.filepath)
-        except native.FAILURES as error:
-            self.report({"ERROR"}, sentence_of(error))
-            return {"CANCELLED"}
+        found = export.exportable(context.scene) if self.all_cloths else []
+        cloths = found or [context.object]
         names = ", ".join(f'"{obj.name}"' for obj in cloths)
-        self.report({"INFO"}, f'{names}, frames {first} to {last}, exported to "{self.filepath}"')
-        return {"FINISHED"}
+
+        def action() -> str:
+            first, last = write(cloths, self.filepath)
+            return f'{names}, frames {first} to {last}, exported to "{self.filepath}"'
+
+        return self.attempt(action)
 
 
 class BOUCLE_OT_export_usd(_Export, Operator):

@@ -9,11 +9,11 @@ from bpy.types import Context, Operator
 from .. import native
 from .._identifiers import Operators
 from ..bridge import proxy
-from ..core.refusal import sentence_of
+from .attempt import Attempt
 from .polling import has_mesh, is_free
 
 
-class _Drives:
+class _Drives(Attempt):
     """An operator that binds the active mesh to a proxy."""
 
     @classmethod
@@ -26,15 +26,14 @@ class _Drives:
             return False
         return True
 
-    def finish(self, context: Context, coarse: bpy.types.Object, also: str) -> set[str]:
-        """Let the proxy be what the artist looks at next."""
+    def finish(self, context: Context, coarse: bpy.types.Object, also: str) -> str:
+        """Let the proxy be what the artist looks at next, and say what was done."""
         for obj in context.selected_objects:
             obj.select_set(False)
         coarse.select_set(True)
         context.view_layer.objects.active = coarse
         text = f'"{coarse.name}" is the cloth now, with {len(coarse.data.vertices)} vertices'
-        self.report({"INFO"}, f"{text}; {also}" if also else text)
-        return {"FINISHED"}
+        return f"{text}; {also}" if also else text
 
 
 class BOUCLE_OT_add_proxy(_Drives, Operator):
@@ -51,16 +50,18 @@ class BOUCLE_OT_add_proxy(_Drives, Operator):
 
     def execute(self, context: Context) -> set[str]:
         """Make it and bind to it."""
-        dense, coarse = context.object, None
-        try:
-            coarse = proxy.make(dense, context.scene, self.vertex_count)
-            also = proxy.drive(dense, coarse, context.scene)
-        except native.FAILURES as error:
-            if coarse is not None:
+        dense, scene = context.object, context.scene
+
+        def action() -> str:
+            coarse = proxy.make(dense, scene, self.vertex_count)
+            try:
+                also = proxy.drive(dense, coarse, scene)
+            except native.FAILURES:
                 proxy.remove(coarse)
-            self.report({"ERROR"}, sentence_of(error))
-            return {"CANCELLED"}
-        return self.finish(context, coarse, also)
+                raise
+            return self.finish(context, coarse, also)
+
+        return self.attempt(action)
 
 
 class BOUCLE_OT_drive_with_proxy(_Drives, Operator):
@@ -83,12 +84,9 @@ class BOUCLE_OT_drive_with_proxy(_Drives, Operator):
     def execute(self, context: Context) -> set[str]:
         """Bind to it."""
         (coarse,) = _others(context)
-        try:
-            also = proxy.drive(context.object, coarse, context.scene)
-        except native.FAILURES as error:
-            self.report({"ERROR"}, sentence_of(error))
-            return {"CANCELLED"}
-        return self.finish(context, coarse, also)
+        return self.attempt(
+            lambda: self.finish(context, coarse, proxy.drive(context.object, coarse, context.scene))
+        )
 
 
 def _others(context: Context) -> list[bpy.types.Object]:

@@ -6,16 +6,15 @@ import bpy
 from bpy.props import EnumProperty, IntProperty
 from bpy.types import Context, Operator
 
-from .. import native
 from .._identifiers import Operators
 from ..bridge import selection, worst
 from ..core.certificate import percent
-from ..core.refusal import Refusal, sentence_of
 from ..core.worst import INTERSECTIONS, STRAIN
+from .attempt import Attempt
 from .polling import can_simulate
 
 
-class BOUCLE_OT_go_to_worst_frame(Operator):
+class BOUCLE_OT_go_to_worst_frame(Attempt, Operator):
     """Go to the frame in which the cloth stretches most, or passes through most"""
 
     bl_idname = Operators.GO_TO_WORST_FRAME
@@ -39,21 +38,19 @@ class BOUCLE_OT_go_to_worst_frame(Operator):
     def execute(self, context: Context) -> set[str]:
         """Find it among the certificates and go there."""
         obj, by_strain = context.object, self.by == "strain"
-        try:
+
+        def action() -> str:
             frame, value = worst.frame(obj, STRAIN if by_strain else INTERSECTIONS)
-        except Refusal as refusal:
-            self.report({"ERROR"}, sentence_of(refusal))
-            return {"CANCELLED"}
-        if not by_strain and value == 0.0:
-            self.report({"INFO"}, f'"{obj.name}" has no intersections in any frame')
-            return {"FINISHED"}
-        context.scene.frame_set(frame)
-        words = f"stretch {percent(value)}" if by_strain else f"{value:.0f} intersections"
-        self.report({"INFO"}, f'"{obj.name}" is worst at frame {frame}: {words}')
-        return {"FINISHED"}
+            if not by_strain and value == 0.0:
+                return f'"{obj.name}" has no intersections in any frame'
+            context.scene.frame_set(frame)
+            words = f"stretch {percent(value)}" if by_strain else f"{value:.0f} intersections"
+            return f'"{obj.name}" is worst at frame {frame}: {words}'
+
+        return self.attempt(action)
 
 
-class BOUCLE_OT_select_worst_edges(Operator):
+class BOUCLE_OT_select_worst_edges(Attempt, Operator):
     """Select the edges that stretch most in the frame that is shown"""
 
     bl_idname = Operators.SELECT_WORST_EDGES
@@ -80,15 +77,15 @@ class BOUCLE_OT_select_worst_edges(Operator):
 
     def execute(self, context: Context) -> set[str]:
         """Compare lengths with those at rest."""
+        return self.attempt(lambda: self._select(context))
+
+    def _select(self, context: Context) -> str:
         obj = context.object
         was_editing = obj.mode == "EDIT"
         if was_editing:
             bpy.ops.object.mode_set(mode="OBJECT")
         try:
             found = worst.edges(obj, context.scene)
-        except native.FAILURES as error:
-            self.report({"ERROR"}, sentence_of(error))
-            return {"CANCELLED"}
         finally:
             if was_editing:
                 bpy.ops.object.mode_set(mode="EDIT")
@@ -98,8 +95,7 @@ class BOUCLE_OT_select_worst_edges(Operator):
         largest = (
             f"the largest strain is {percent(found[0].strain)}" if found else "it has no edges"
         )
-        self.report({"INFO"}, f'"{obj.name}": {len(chosen)} edges selected; {largest}')
-        return {"FINISHED"}
+        return f'"{obj.name}": {len(chosen)} edges selected; {largest}'
 
 
 CLASSES = (BOUCLE_OT_go_to_worst_frame, BOUCLE_OT_select_worst_edges)

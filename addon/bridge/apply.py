@@ -41,6 +41,11 @@ def as_start(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
     """
     positions = _shown(obj, scene)
     _refuse_others(obj)
+    if obj.boucle.use_dynamic_mesh:
+        raise Refusal(
+            f'"{obj.name}" has Dynamic Mesh on, with which its lengths at rest are those of the mesh and '
+            "would change with it: switch it off, or apply the frame as the rest shape"
+        )
     keys = obj.data.shape_keys
     named = obj.boucle.rest_shape_key
     if keys is not None and [key.name for key in keys.key_blocks[1:]] != [named]:

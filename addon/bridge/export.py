@@ -8,7 +8,7 @@ from contextlib import contextmanager
 import bpy
 
 from ..core.refusal import Refusal, sentence_of
-from . import cache, registry
+from . import cache, registry, runtime
 
 
 def exportable(scene: bpy.types.Scene) -> list[bpy.types.Object]:
@@ -30,6 +30,11 @@ def to_usd(cloths: Sequence[bpy.types.Object], path: str) -> tuple[int, int]:
         Refusal: A bake cannot be played, or Blender cannot write the file.
     """
     with _alone(cloths) as (first, last):
+        if first < 0:
+            raise Refusal(
+                f'"{path}" is not exported: the bakes begin at frame {first}, and Blender writes USD from '
+                "frame 0 on: export Alembic, or bake from frame 0 or later"
+            )
         _call(
             bpy.ops.wm.usd_export,
             path,
@@ -85,6 +90,7 @@ def _alone(cloths: Sequence[bpy.types.Object]) -> Iterator[tuple[int, int]]:
     selected, active = [obj.name for obj in layer.objects if obj.select_get()], layer.objects.active
     frame, subframe = scene.frame_current, scene.frame_subframe
     start, end = scene.frame_start, scene.frame_end
+    runtime.busy.add("export")  # live cloths stand still while Blender walks through the frames
     try:
         for obj in layer.objects:
             obj.select_set(obj in cloths)
@@ -103,3 +109,4 @@ def _alone(cloths: Sequence[bpy.types.Object]) -> Iterator[tuple[int, int]]:
             obj.select_set(obj.name in selected)
         layer.objects.active = active
         scene.frame_set(frame, subframe=subframe)
+        runtime.busy.discard("export")

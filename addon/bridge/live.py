@@ -50,10 +50,13 @@ def any_session() -> bool:
 
 def on_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Step or show every live cloth of the scene at its frame; sub-frames are left alone."""
-    if runtime.busy or scene.frame_subframe != 0.0 or not runtime.may_write_in_render():
+    is_still = runtime.busy == {"export"}  # bakes go on to tell of their frames
+    if runtime.busy and not is_still:
+        return
+    if scene.frame_subframe != 0.0 or not runtime.may_write_in_render():
         return
     for obj in registry.cloths_of(scene):
-        if _is_live(obj):
+        if _is_live(obj) and not is_still:
             _come_to_frame(obj, scene, depsgraph)
         show_attributes(obj, scene)
 

@@ -11,7 +11,7 @@ messages: dict[int, str] = {}
 """The last sentence about a cloth, by `session_uid`; shown in its panel."""
 
 busy: set[str] = set()
-"""What keeps live mode from acting: "bake" or "grab" while one runs."""
+"""What keeps live mode from acting: "bake", "grab", "check" or "export" while one runs."""
 
 rendering: set[str] = set()
 """Names of the scenes that are being rendered."""

@@ -64,6 +64,11 @@ def apply_all():
         play(1, 2)
         began = addon("bridge.certificate").rows(obj)[1]["max_strain"]
         out["start"] = farthest(shown_positions(obj), shown), began - strain, strain
+        play(3, 5)
+        obj.boucle.use_dynamic_mesh = True
+        play(1, 4)
+        before = live.session_of(obj)
+        out["dynamic"] = refusal_of(ops.apply_as_start), live.session_of(obj) is before
     return out
 
 
@@ -83,4 +88,6 @@ def test_a_frame_becomes_rest_shape_start_pose_or_shape_key(blender):
     assert has_setting == polls
     if has_setting:
         distance, difference, strain = found["start"]
+        refused, is_kept = found["dynamic"]
+        assert "has Dynamic Mesh on" in refused and is_kept
         assert distance < 0.2 and strain > 0.002 and abs(difference) < 1e-3

@@ -79,6 +79,47 @@ def test_what_is_exported_comes_back_with_its_motion_and_its_strain(blender):
     assert result["both"] == 2
 
 
+def export_beside_live(folder):
+    import bpy
+    from cloths import add_cloth, addon, farthest, mesh_positions, play, refusal_of, shown_positions
+
+    live, scene = addon("bridge.live"), bpy.context.scene
+    cloth, other = add_cloth(end=2, frame_start=-4), add_cloth(end=30)
+    other.location.y = 3.0
+    bpy.context.view_layer.objects.active = cloth
+    bpy.ops.boucle.bake()
+    play(1, 1)  # the export walks through frame 2
+    session = live.session_of(other)
+    before = [session.frames.last, mesh_positions(other)]
+    path = os.path.join(folder, "early.abc")
+    said = refusal_of(bpy.ops.boucle.export_usd, filepath=os.path.join(folder, "early.usdc"))
+    bpy.ops.boucle.export_alembic(filepath=path)
+    same = live.session_of(other) is session
+    out = {"live": same and [session.frames.last, mesh_positions(other)] == before, "usd": said}
+    out["goes on"] = [play(2, 4), live.session_of(other).frames.last][1]
+    expected = {}
+    for frame in (-4, -1, 0, 2):
+        scene.frame_set(frame)
+        expected[frame] = shown_positions(cloth)
+    out["moves"] = farthest(expected[-4], expected[-1])
+    known = set(bpy.data.objects)
+    bpy.ops.wm.alembic_import(filepath=path)
+    found = next(o for o in bpy.data.objects if o not in known and o.type == "MESH")
+    out["errors"] = []
+    for frame, positions in expected.items():
+        scene.frame_set(frame)
+        out["errors"].append(farthest(shown_positions(found), positions))
+    return out
+
+
+def test_an_export_leaves_live_cloths_alone_and_takes_negative_frames(blender):
+    result = blender.run(export_beside_live, folder=blender.folder)
+    assert result["live"] and result["goes on"] == 4
+    assert "begin at frame -4, and Blender writes USD from frame 0 on" in result["usd"]
+    assert result["moves"] > 1e-3
+    assert max(result["errors"]) < 1e-5, result["errors"]
+
+
 def refuse_export(folder):
     import bpy
     from cloths import add_cloth, refusal_of

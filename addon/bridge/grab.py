@@ -170,4 +170,6 @@ def _begin_or_go_on(
         session = live.begin(obj, scene, depsgraph)
     if session is None:
         raise Refusal(runtime.messages[obj.session_uid])
+    if session.settle is not None:
+        raise Refusal(f'"{obj.name}" is {session.settle.words}: grab it when it is settled')
     return session

@@ -20,11 +20,12 @@ from ..core.live_frames import Action, Frame
 from ..core.progress import size
 from ..core.quantity import Numbers
 from ..core.refusal import Refusal, sentence_of
-from . import cache, display, registry, rest, runtime, sampling, vertex_attributes
+from . import cache, display, registry, rest, runtime, sampling, settling, vertex_attributes
 from .session import (
     Session,
     basis_of,
     build,
+    go_on_settling,
     moment_of,
     read_numbers,
     read_positions,
@@ -110,6 +111,8 @@ def _come_to_frame(
         if session is None:
             return
     action = session.frames.action(frame, scene.frame_subframe, obj.boucle.frame_end)
+    if session.settle is not None and action is not Action.IGNORE:
+        action = Action.SHOW
     session.waits = _explain(session, action)
     if action is Action.STEP:
         _step(session, obj, depsgraph)
@@ -129,7 +132,39 @@ def begin(
         _say(obj, sentence_of(error))
         return None
     _sessions[obj.session_uid] = session
+    if session.settle is not None and not bpy.app.timers.is_registered(settle_on):
+        bpy.app.timers.register(settle_on)
     return session
+
+
+def settle_on() -> float | None:
+    """Let cloths settle for a slice of time; a timer calls it until all are settled or reset."""
+    waiting = [session for session in _sessions.values() if session.settle is not None]
+    if runtime.busy or runtime.rendering:
+        return 1.0
+    for session in waiting:
+        obj = registry.by_uid(session.uid)
+        if obj is None:
+            session.settle = None
+            continue
+        try:
+            is_new = go_on_settling(session, obj, settling.SLICE)
+        except native.FAILURES as error:
+            session.solver = session.settle = None
+            _say(obj, sentence_of(error))
+            continue
+        if is_new and _is_live(obj):
+            session.display.show(obj, session.frames, bpy.context.scene.frame_current)
+            show_attributes(obj, bpy.context.scene)
+        _redraw()
+    return 0.0 if waiting else None
+
+
+def _redraw() -> None:
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type in {"VIEW_3D", "PROPERTIES"}:
+                area.tag_redraw()
 
 
 def valid_session(obj: bpy.types.Object, scene: bpy.types.Scene) -> Session | None:
@@ -296,6 +331,8 @@ def status(obj: bpy.types.Object) -> str:
     session = session_of(obj)
     if session is None:
         return f"Not baked: play from frame {obj.boucle.frame_start} to see it move"
+    if session.settle is not None:
+        return f"Live: {session.settle.words}"
     frames = session.frames
     text = f"Live: frames {frames.first} to {frames.last} in memory, {size(frames.size_bytes)}"
     return f"{text}; {session.waits}" if session.waits else text

@@ -7,7 +7,7 @@ from typing import Any
 
 import bpy
 
-from ..core import drift, points, quantity, scene_json, settle
+from ..core import drift, points, quantity, scene_json
 from ..core.bake import Moment
 from ..core.live_frames import Frame, LiveFrames
 from ..core.points import Points
@@ -22,6 +22,7 @@ from . import (
     runtime,
     sampling,
     settings,
+    settling,
     shape,
     simulation,
     slot,
@@ -30,6 +31,7 @@ from . import (
 from .colliders import Colliders
 from .fields import Fields
 from .pins import Pins
+from .settling import LiveSettle
 from .winds import Winds
 
 
@@ -52,6 +54,8 @@ class Session:
     """A digest of the settings; looked at after undo, which changes them without a word."""
     place: points.Affine
     """The object in its parent's space, when the last frame was shown."""
+    settle: LiveSettle | None = None
+    """While the cloth is not yet settled: the first frame is not what it will be, and no other is simulated."""
     waits: str = ""
     """Why the cloth does not move on at the present frame; empty if it does."""
     refusal: str = ""
@@ -83,15 +87,14 @@ def build(obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.De
     pose = sampling.pose(obj, depsgraph, held)
     forces = pushing.sample(depsgraph)
     Moment([pose], met.targets(depsgraph), forces, blowing.sample(depsgraph)).aim(solver)
-    limit = memory_limit()
-    if settle.run(solver, scene_json.settling(description), [len(obj.data.vertices)]):
-        local = read_positions(solver, to_object, len(obj.data.vertices))
+    how = scene_json.settling(description)
+    settle = LiveSettle(solver, how, len(obj.data.vertices), to_object) if how.frames else None
     first = Frame(local, solver.certificate(), read_numbers(solver, obj))
     shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
-    return Session(
+    session = Session(
         uid=obj.session_uid,
         solver=solver,
-        frames=LiveFrames(obj.boucle.frame_start, first, limit),
+        frames=LiveFrames(obj.boucle.frame_start, first, memory_limit()),
         pins=held,
         colliders=met,
         fields=pushing,
@@ -100,7 +103,31 @@ def build(obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.De
         basis=basis_of(obj, scene),
         settings=settings_digest(obj, scene),
         place=points.affine(obj.matrix_local),
+        settle=settle,
     )
+    go_on_settling(session, obj, settling.patience())
+    return session
+
+
+def go_on_settling(session: Session, obj: bpy.types.Object, seconds: float) -> bool:
+    """Let the cloth settle for about so long; whether its first frame has become another, because it is settled.
+
+    Raises:
+        native.BoucleError: What the solver said.
+    """
+    settle = session.settle
+    if settle is None:
+        return False
+    settle.go_on(seconds)
+    if not settle.is_done:
+        return False
+    session.settle = None
+    positions = read_positions(session.solver, settle.to_object, len(obj.data.vertices))
+    numbers = read_numbers(session.solver, obj)
+    frame = Frame(positions, session.solver.certificate(), numbers)
+    session.frames = LiveFrames(session.frames.first, frame, memory_limit())
+    session.display.begin_again(obj)
+    return True
 
 
 def memory_limit() -> int:

@@ -12,6 +12,7 @@ from .points import Points
 
 _WORDS = {
     "start": "start frame",
+    "speed": "speed multiplier",
     "stretch": "stretch stiffness",
     "shear": "shear stiffness",
     "bend": "bend stiffness",

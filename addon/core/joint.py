@@ -95,6 +95,8 @@ def _difference(one: Scene, other: Scene) -> str:
     """What keeps two cloths from being simulated together, in words; empty if nothing does."""
     if one["scene"]["frames"][0] != other["scene"]["frames"][0]:
         return "start frames"
+    if one["scene"].get("speed") != other["scene"].get("speed"):
+        return "speed multipliers"
     if settling(one) != settling(other):
         return "settings of settling"
     for key, words in (

@@ -77,6 +77,8 @@ def describe(
         "cloth": [_cloth(name, values, groups, bool(colliders) or meets_cloths)],
         "solver": _solver(name, values),
     }
+    if decimal(values.get("speed", 1.0)) != 1.0:
+        scene["scene"]["speed"] = decimal(values["speed"])
     if values.get("settle_frames"):
         scene["scene"]["settle_frames"] = int(values["settle_frames"])
         scene["scene"]["settle_damped"] = bool(values["settle_damped"])
@@ -95,8 +97,10 @@ def settling(scene: Mapping[str, Any]) -> Settling:
 
 
 def encode(scene: Mapping[str, Any]) -> str:
-    """The scene as JSON for the solver, which begins with the frames of settling."""
-    head = {key: value for key, value in scene["scene"].items() if not key.startswith("settle")}
+    """The scene as JSON for the solver, which begins with the frames of settling; how long a frame is the speed says."""
+    ours = ("settle_frames", "settle_damped", "speed")
+    head = {key: value for key, value in scene["scene"].items() if key not in ours}
+    head["fps"] = head["fps"] / scene["scene"].get("speed", 1.0)
     start, end = scene["scene"]["frames"]
     head["frames"] = [start - settling(scene).frames, end]
     return json.dumps({**scene, "scene": head}, allow_nan=False)

@@ -25,7 +25,8 @@ class Settle:
     def __init__(self, simulation: Any, settling: Settling, vertex_counts: Sequence[int]) -> None:
         """Nothing moves before `advance`; the counts are those of the cloths."""
         self._simulation = simulation
-        self._left = settling.frames
+        self.left = settling.frames
+        """Frames that are still to be simulated."""
         self._energy = 0.0
         self._damped = settling.damped
         self._positions = [points.empty("d", 3 * count) for count in vertex_counts]
@@ -33,12 +34,12 @@ class Settle:
     @property
     def is_done(self) -> bool:
         """Whether the start frame is reached."""
-        return self._left == 0
+        return self.left == 0
 
     def advance(self) -> None:
         """Simulate one frame; pins and colliders stay where they are."""
         energy = self._simulation.advance()["kinetic_energy"]
-        self._left -= 1
+        self.left -= 1
         if not self._damped:
             return
         if energy < self._energy or self.is_done:
@@ -47,11 +48,3 @@ class Settle:
                 self._simulation.set_positions(cloth, positions)
             energy = 0.0
         self._energy = energy
-
-
-def run(simulation: Any, settling: Settling, vertex_counts: Sequence[int]) -> bool:
-    """Bring a simulation to its start frame at once; whether the cloth has moved."""
-    settle = Settle(simulation, settling, vertex_counts)
-    while not settle.is_done:
-        settle.advance()
-    return settling.frames > 0

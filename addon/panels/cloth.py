@@ -65,6 +65,7 @@ class BOUCLE_PT_cloth(PhysicsPanel, Panel):
         column.prop(settings, "mass_mode")
         by_area = settings.mass_mode == "density"
         column.prop(settings, "density" if by_area else "mass_per_vertex")
+        column.prop(settings, "speed")
         self.layout.operator(Operators.CHECK, icon="CHECKMARK")
         if any(modifier.type == "CLOTH" for modifier in context.object.modifiers):
             self.layout.operator(Operators.COPY_FROM_CLOTH, icon="COPYDOWN")

@@ -24,6 +24,13 @@ class SolverProperties:
 
     in_presets = True
 
+    speed: FloatProperty(
+        name="Speed Multiplier",
+        description="How much time passes for the cloth in each frame, as a multiple of the frame's own (fraction): below 1 "
+        "it moves in slow motion",
+        default=1.0, min=0.01, max=100.0, soft_min=0.1, soft_max=10.0, precision=3, step=10,
+        options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
     integrator: EnumProperty(
         name="Integrator",
         description="The rule that moves the vertices",

@@ -20,6 +20,7 @@ def copy_everything():
     settings, contact = modifier.settings, modifier.collision_settings
     settings.vertex_group_mass = "Held"
     settings.quality = 12
+    settings.time_scale = 0.5
     settings.compression_stiffness = 3.0
     settings.use_internal_springs = True
     settings.vertex_group_bending = "Free"
@@ -42,7 +43,7 @@ def copy_everything():
     cloth = obj.boucle
     names = (
         "enabled", "mass_mode", "density", "stretch", "shear", "bend", "stiffness_from",
-        "damping_per_kind", "damping_stretch", "damping_law", "air_damping", "quality", "pin_group",
+        "damping_per_kind", "damping_stretch", "damping_law", "air_damping", "quality", "speed", "pin_group",
         "object_collision", "self_collision", "self_collision_group", "thickness", "friction",
         "frame_start", "frame_end",
     )  # fmt: skip
@@ -66,7 +67,7 @@ def test_the_settings_come_over_with_their_numbers_and_what_is_lost_is_said(blen
     expected = {
         "enabled": True, "mass_mode": "density", "density": 0.3 * 441 / 4.0, "stretch": 150_000.0,
         "shear": 50_000.0, "bend": 179.75, "stiffness_from": "springs", "damping_per_kind": True,
-        "damping_stretch": 158.11, "damping_law": "axial", "air_damping": 0.31623, "quality": "final",
+        "damping_stretch": 158.11, "damping_law": "axial", "air_damping": 0.31623, "quality": "final", "speed": 0.5,
         "pin_group": "Held", "object_collision": True, "self_collision": True,
         "self_collision_group": "Free", "thickness": 0.01, "friction": 0.2, "frame_start": 5,
         "frame_end": 77,

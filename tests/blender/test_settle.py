@@ -75,6 +75,65 @@ def hang_and_settle():
     return out
 
 
+def settle_in_slices():
+    import bpy
+    from cloths import add_cloth, addon, mesh_positions, play
+
+    live, settling, scene = addon("bridge.live"), addon("bridge.settling"), bpy.context.scene
+    obj = add_cloth(end=8, settle_frames=12)
+    rest = mesh_positions(obj)
+
+    def rows():
+        return [row["hash"] for row in addon("bridge.certificate").rows(obj).values()]
+
+    play(1, 5)
+    out = {"at once": rows()}
+    begun = []
+    settling.patience, settling.SLICE = (
+        (lambda: 0.0),
+        1e-9,
+    )  # a frame a slice, as in a window that has no time
+    live.drop(obj)
+    register, bpy.app.timers.register = bpy.app.timers.register, begun.append
+    try:
+        play(1, 3)
+    finally:
+        bpy.app.timers.register = register
+    out["timer"] = begun == [live.settle_on]
+    out["before"] = mesh_positions(obj) == rest, obj.boucle.status
+    try:
+        addon("bridge.grab").Grab(obj, scene, bpy.context.evaluated_depsgraph_get())
+    except addon("core.refusal").Refusal as refusal:
+        out["grab"] = str(refusal)
+    pauses = [live.settle_on() for _ in range(12)]
+    out["pauses"] = pauses == [0.0] * 12, live.settle_on()
+    out["settled"] = mesh_positions(obj) == rest, obj.boucle.status
+    play(1, 5)
+    out["in slices"] = rows()
+    live.drop(obj)
+    bpy.app.timers.register = begun.append
+    try:
+        play(1, 1)
+        bpy.ops.boucle.reset()
+    finally:
+        bpy.app.timers.register = register
+    out["reset"] = live.settle_on(), mesh_positions(obj) == rest
+    return out
+
+
+def test_a_window_lives_while_a_cloth_settles(blender):
+    found = blender.run(settle_in_slices)
+    assert found["timer"]
+    is_at_rest, status = found["before"]
+    assert is_at_rest and status == "Live: settling (0 of 12 frames; Reset stops it)"
+    assert "grab it when it is settled" in found["grab"]
+    assert found["pauses"] == [True, None]
+    is_at_rest, status = found["settled"]
+    assert not is_at_rest and status.startswith("Live: frames 1 to 1 in memory")
+    assert len(found["at once"]) == 5 and found["in slices"] == found["at once"]
+    assert found["reset"] == [None, True]
+
+
 def test_a_settled_cloth_begins_where_it_hangs_at_rest(blender):
     found = blender.run(hang_and_settle)
     assert found["first"][0] > 0.5 and -1.03 < found["first"][1] < -0.9, "it hangs down, 1 m long"

@@ -52,6 +52,15 @@ def test_settling_begins_before_the_start_and_is_no_key_of_the_solver():
     assert scene_json.settling(described(settle_frames=0)) == (0, True)
 
 
+def test_a_speed_makes_frames_longer_for_the_cloth_alone():
+    assert "speed" not in described(speed=1.0)["scene"]
+    scene = described(speed=0.5)
+    assert scene["scene"]["fps"] == 24.0 and scene["scene"]["speed"] == 0.5
+    head = json.loads(scene_json.encode(scene))["scene"]
+    assert head["fps"] == 48.0 and "speed" not in head
+    assert simulation(scene).frame == 1
+
+
 def test_mass_damping_and_steps_are_given_one_way_each():
     cloth = described()["cloth"][0]
     assert cloth["density"] == 0.2 and "mass_per_vertex" not in cloth

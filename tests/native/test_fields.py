@@ -56,13 +56,12 @@ def test_fields_that_are_not_accepted_leave_those_before(sheet, fields, match):
 
 def test_a_wind_blows_as_it_is_told_from_frame_to_frame(sheet):
     blow = {"kind": "wind", "coefficient": 1e-3, "velocity": [0, 1, 0]}
-    steady, turned = free(sheet, blow), free(sheet, {**blow, "velocity": [0, 0, 0]}, blow)
+    still = {**blow, "velocity": [0, 0, 0]}
+    steady, turned = free(sheet, still, {**blow, "velocity": [0, 3, 0]}), free(sheet, still, blow)
     turned.set_wind_velocity(1, (0.0, 3.0, 0.0))
-    turned.advance()
-    turned.set_wind_velocity(1, (0.0, -1.0, 0.0))
-    steady.advance()
-    assert speeds(turned)[7][1] == pytest.approx(3 * speeds(steady)[7][1], rel=1e-6)
+    assert turned.advance()["hash"] == steady.advance()["hash"]
     before = speeds(turned)[7][1]
+    turned.set_wind_velocity(1, (0.0, -1.0, 0.0))
     turned.advance()
     assert speeds(turned)[7][1] < 0.9 * before
     for wrong, match in (((2, (0.0, 0.0, 0.0)), "number of a wind"), ((0, (0.0, 2e4, 0.0)), "1e4")):

@@ -9,6 +9,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from .bridge import (
+    cache,
     certificate,
     cloth,
     findings,
@@ -37,7 +38,7 @@ def depsgraph_update_post(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgrap
     """Give back the rest shape when the artist starts to edit, or moves the mesh within its object."""
     thickness_view.forget()
     overlay_view.forget()
-    if live.any_session() and not runtime.busy and not runtime.rendering:
+    if registry.all_cloths() and not runtime.busy and not runtime.rendering:
         live.follow_edits(depsgraph)
 
 
@@ -96,6 +97,7 @@ def undo_post(scene: bpy.types.Scene, *_: Any) -> None:
     thickness_view.follow()
     overlay_view.follow()
     if live.any_session() or registry.all_cloths():
+        cache.follow_files()
         live.revalidate(scene)
 
 

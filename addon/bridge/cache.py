@@ -83,6 +83,17 @@ def reattach(obj: bpy.types.Object) -> bool:
     return True
 
 
+def follow_files() -> None:
+    """Remember what the bakes on disk are made from: undo, and a file that is opened again, know of an earlier bake only."""
+    for obj in registry.local_cloths():
+        path = played_path(obj)
+        if not path:
+            continue
+        remembered = report.read(cache_paths.files_of(path).report).get("bake")
+        if remembered and remembered.get("bake") != record_of(obj).get("bake"):
+            attach(obj, path, remembered)
+
+
 def free(obj: bpy.types.Object) -> None:
     """Remove the object's own bake, and the one before it, from the disk; another file's is only let go."""
     files = own_files(obj)

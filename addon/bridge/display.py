@@ -26,6 +26,13 @@ def may_write(obj: bpy.types.Object) -> bool:
     )
 
 
+def silence_leftover(obj: bpy.types.Object) -> None:
+    """Name no temporary file of frames that are gone: undo brings its name back."""
+    found = slot.find(obj)
+    if found is not None and cache_paths.is_live(found.cache.filepath):
+        slot.silence(found.cache)
+
+
 class Display(Protocol):
     """A way of showing frames."""
 
@@ -128,9 +135,7 @@ class TemporaryFile:
 
     def hide(self, obj: bpy.types.Object) -> None:
         """Name no temporary file."""
-        found = slot.find(obj)
-        if found is not None and cache_paths.is_live(found.cache.filepath):
-            slot.silence(found.cache)
+        silence_leftover(obj)
 
     def end(self, obj: bpy.types.Object) -> None:
         """Name no temporary file, and remove it."""

@@ -56,6 +56,7 @@ def on_frame(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
         return
     if scene.frame_subframe != 0.0 or not runtime.may_write_in_render():
         return
+    _forget_gone()
     for obj in registry.cloths_of(scene):
         if _is_live(obj) and not is_still:
             _come_to_frame(obj, scene, depsgraph)
@@ -261,31 +262,41 @@ def show_anew(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
 
 def revalidate(scene: bpy.types.Scene) -> None:
     """After undo or redo: keep the sessions whose cloths are as they were, and show their frame again."""
-    for uid in list(_sessions):
-        obj = registry.by_uid(uid)
-        if obj is None or not registry.is_cloth(obj):
-            _sessions.pop(uid).display.forget()
-        elif obj.mode in EDITING_MODES or _sessions[uid].settings != settings_digest(obj, scene):
+    _forget_gone()
+    for obj in registry.cloths_of(scene):
+        session = session_of(obj)
+        if session is None:
+            continue
+        if obj.mode in EDITING_MODES or session.settings != settings_digest(obj, scene):
             drop(obj)
     for obj in registry.cloths_of(scene):
         session = valid_session(obj, scene)
+        if session is None:
+            display.silence_leftover(obj)
         if session is not None and _is_live(obj):
             session.display.show(obj, session.frames, scene.frame_current)
         show_attributes(obj, scene)
+
+
+def _forget_gone() -> None:
+    """Let go the frames of cloths that are no longer there."""
+    if not _sessions:
+        return
+    uids = {obj.session_uid for obj in registry.all_cloths()}
+    for uid in _sessions.keys() - uids:
+        _sessions.pop(uid).display.forget()
 
 
 def follow_edits(depsgraph: bpy.types.Depsgraph) -> None:
     """Give back the rest shape of cloths that the artist began to edit; called after each depsgraph update."""
     if not depsgraph.id_type_updated("OBJECT") and not depsgraph.id_type_updated("MESH"):
         return
-    for uid in list(_sessions):
-        obj = registry.by_uid(uid)
-        if obj is None:
-            continue
-        if obj.mode in EDITING_MODES:
-            drop(obj)
-        else:
-            _follow_applied_transform(obj, _sessions[uid])
+    for obj in registry.local_cloths():
+        session = session_of(obj)
+        if obj.mode in EDITING_MODES and (session is not None or rest.is_displaced(obj.data)):
+            drop(obj)  # a copy of a live cloth shows a frame without a session
+        elif session is not None:
+            _follow_applied_transform(obj, session)
 
 
 def _follow_applied_transform(obj: bpy.types.Object, session: Session) -> None:

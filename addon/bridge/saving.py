@@ -49,6 +49,7 @@ def after_load() -> None:
         if not path or cache_paths.is_live(path):
             slot.silence(found.cache)
     cache.ensure_identity()
+    cache.follow_files()
     for obj in registry.cloths_of(bpy.context.scene):
         live.show_attributes(obj, bpy.context.scene)
 

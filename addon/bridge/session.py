@@ -51,7 +51,7 @@ class Session:
     basis: tuple[object, ...]
     """What must not change while the session lives; looked at at every frame."""
     settings: str
-    """A digest of the settings; looked at after undo, which changes them without a word."""
+    """A digest of settings, groups and rest shape; looked at after undo, which changes them without a word."""
     place: points.Affine
     """The object in its parent's space, when the last frame was shown."""
     settle: LiveSettle | None = None
@@ -152,9 +152,10 @@ def basis_of(obj: bpy.types.Object, scene: bpy.types.Scene) -> tuple[object, ...
 
 
 def settings_digest(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
-    """A digest of the settings, without the vertices of groups; empty if they contradict each other."""
+    """A digest of the settings, the groups and the rest shape; empty if they contradict each other."""
     try:
-        return drift.whole_digest(record.of(obj, scene, in_full=False))
+        known = drift.whole_digest(record.of(obj, scene))
+        return known + drift.digest(rest.positions(obj.data))
     except Refusal:
         return ""
 

@@ -13,13 +13,8 @@ use crate::interrupter::Interrupter;
 use crate::meshes::{self, MeshArrays};
 
 /// The bytes of a cloth's springs: ends, kinds, rest lengths, stiffnesses, dampings.
-type SpringBytes<'py> = (
-    Bound<'py, PyBytes>,
-    Bound<'py, PyBytes>,
-    Bound<'py, PyBytes>,
-    Bound<'py, PyBytes>,
-    Bound<'py, PyBytes>,
-);
+type SpringBytes<'py> = (Bytes<'py>, Bytes<'py>, Bytes<'py>, Bytes<'py>, Bytes<'py>);
+type Bytes<'py> = Bound<'py, PyBytes>;
 
 /// Cloths in motion, at the end of `frame`.
 #[pyclass(module = "boucle_core")]
@@ -181,8 +176,9 @@ impl Simulation {
         wind: usize,
         velocity: [f64; 3],
     ) -> PyResult<()> {
-        let velocity = Vector::from(velocity);
-        self.with(py, |assembly| Ok(assembly.simulation.set_wind_velocity(wind, velocity)?))
+        self.with(py, |assembly| {
+            Ok(assembly.simulation.set_wind_velocity(wind, Vector::from(velocity))?)
+        })
     }
 
     fn set_gravity(&mut self, py: Python<'_>, gravity: [f64; 3]) -> PyResult<()> {

@@ -176,9 +176,8 @@ impl Simulation {
         wind: usize,
         velocity: [f64; 3],
     ) -> PyResult<()> {
-        self.with(py, |assembly| {
-            Ok(assembly.simulation.set_wind_velocity(wind, Vector::from(velocity))?)
-        })
+        let to = Vector::from(velocity);
+        self.with(py, |assembly| Ok(assembly.simulation.set_wind_velocity(wind, to)?))
     }
 
     fn set_gravity(&mut self, py: Python<'_>, gravity: [f64; 3]) -> PyResult<()> {

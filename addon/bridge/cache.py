@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import uuid
+from functools import lru_cache
 from typing import Any
 
 import bpy
@@ -87,11 +88,25 @@ def follow_files() -> None:
     """Remember what the bakes on disk are made from: undo, and a file that is opened again, know of an earlier bake only."""
     for obj in registry.local_cloths():
         path = played_path(obj)
-        if not path:
-            continue
-        remembered = report.read(cache_paths.files_of(path).report).get("bake")
+        remembered = _bake_of(cache_paths.files_of(path).report) if path else None
         if remembered and remembered.get("bake") != record_of(obj).get("bake"):
-            attach(obj, path, remembered)
+            slot.find(obj).cache.frame_start = float(remembered["first"])
+            obj.boucle.bake_record = json.dumps(remembered)
+
+
+def _bake_of(path: str) -> dict[str, Any] | None:
+    """What the bake of a report remembers; None without one."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    return _read_bake(path, found.st_mtime_ns, found.st_size)
+
+
+@lru_cache(maxsize=256)
+def _read_bake(path: str, _written: int, _size: int) -> dict[str, Any] | None:
+    """A report is long, and is read once as long as its file stays the same."""
+    return report.read(path).get("bake")
 
 
 def free(obj: bpy.types.Object) -> None:

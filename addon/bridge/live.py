@@ -111,6 +111,8 @@ def _come_to_frame(
         session = begin(obj, scene, depsgraph)
         if session is None:
             return
+    if session.settle is not None and runtime.rendering:
+        _settle(session, obj, settling.patience())
     action = session.frames.action(frame, scene.frame_subframe, obj.boucle.frame_end)
     if session.settle is not None and action is not Action.IGNORE:
         action = Action.SHOW
@@ -147,18 +149,24 @@ def settle_on() -> float | None:
         obj = registry.by_uid(session.uid)
         if obj is None:
             session.settle = None
-            continue
-        try:
-            is_new = go_on_settling(session, obj, settling.SLICE)
-        except native.FAILURES as error:
-            session.solver = session.settle = None
-            _say(obj, sentence_of(error))
-            continue
-        if is_new and _is_live(obj):
-            session.display.show(obj, session.frames, bpy.context.scene.frame_current)
-            show_attributes(obj, bpy.context.scene)
-        _redraw()
+        else:
+            _settle(session, obj, settling.SLICE)
+    _redraw()
     return 0.0 if waiting else None
+
+
+def _settle(session: Session, obj: bpy.types.Object, seconds: float) -> None:
+    """Let a cloth settle for about so long, and show it when it is done."""
+    scene = bpy.context.scene
+    try:
+        is_new = go_on_settling(session, obj, seconds)
+    except native.FAILURES as error:
+        session.solver = session.settle = None
+        _say(obj, sentence_of(error))
+        return
+    if is_new and _is_live(obj):
+        session.display.show(obj, session.frames, scene.frame_current)
+        show_attributes(obj, scene)
 
 
 def _redraw() -> None:

@@ -18,6 +18,11 @@ FOLLOWED = (
     "pin_strength", "pin_stiffness", *shape.SHRINK, *shape.PRESSURE, "wind_velocity",
 )  # fmt: skip
 """Settings that are followed where they are animated. All others are taken once, at the start frame."""
+_USED_WITH = {
+    "pin_strength": "pin_group", "pin_stiffness": "pin_group", "wind_velocity": "use_wind",
+    **dict.fromkeys(shape.PRESSURE, "use_pressure"),
+}  # fmt: skip
+"""Without what some of them make no difference."""
 
 
 def of(
@@ -51,6 +56,8 @@ def of(
 def _keys(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[tuple[str, str]]:
     """Digests of the keys of what is followed, by what it is called."""
     for name in FOLLOWED:
+        if not getattr(obj.boucle, _USED_WITH.get(name, "enabled")):
+            continue
         if animation.moves(obj, f"boucle.{name}"):
             yield f"keys of {name.replace('_', ' ')}", animation.keys(obj, f"boucle.{name}")
     for name in ("gravity", "use_gravity"):

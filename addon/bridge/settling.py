@@ -13,6 +13,7 @@ import bpy
 
 from ..core.points import Affine
 from ..core.settle import Settle, Settling
+from . import runtime
 
 PATIENCE = 0.5
 """Seconds for which a window waits."""
@@ -21,8 +22,8 @@ SLICE = 0.05
 
 
 def patience() -> float:
-    """Seconds for which settling may go on at once."""
-    return math.inf if bpy.app.background else PATIENCE
+    """Seconds for which settling may go on at once: a render waits until it is done."""
+    return math.inf if bpy.app.background or runtime.rendering else PATIENCE
 
 
 class LiveSettle:

@@ -51,9 +51,10 @@ def gui(zip_file: Path, words: Sequence[str] = ()) -> None:
     """
     shutil.rmtree(FOLDER, ignore_errors=True)
     (FOLDER / "talk").mkdir(parents=True)
-    with heading(f"Install {zip_file.name} in Blender"):
-        command = ["blender", "--command", "extension", "install-file", "-r", "user_default", "-e"]
-        run(blender([*command, zip_file]), timeout=180)
+    if words[:1] == ["path"]:
+        shutil.copy2(zip_file, FOLDER)  # it is installed in the window
+    else:
+        install(zip_file)
     with heading("Play the scenario in Blender's window"), x_server() as display:
         code = play(display, words)
     steps = json.loads((FOLDER / "talk" / "steps.json").read_text(encoding="utf-8"))
@@ -63,6 +64,13 @@ def gui(zip_file: Path, words: Sequence[str] = ()) -> None:
     bad = [step["name"] for step in steps if step["state"] not in {"ok", "skipped"}]
     if bad:
         raise Failed(f"in the window: {', '.join(bad)}")
+
+
+def install(zip_file: Path) -> None:
+    """Install the extension by Blender's command line."""
+    with heading(f"Install {zip_file.name} in Blender"):
+        command = ["blender", "--command", "extension", "install-file", "-r", "user_default", "-e"]
+        run(blender([*command, zip_file]), timeout=180)
 
 
 def blender(words: list[object], **variables: str) -> list[str]:

@@ -48,6 +48,7 @@ def window(cloths):
         window_manager = Manager()
         workspace = Workspace()
         window = None
+        screen = None
         scene = bpy.context.scene
         object = cloths[0]
 

@@ -21,12 +21,15 @@ from environment import OUT, ROOT, SCRIPTS, Failed, heading, run, stop
 
 PACKAGES = ("blender", "xvfb", "xdotool", "imagemagick", "libgl1-mesa-dri")
 FOLDER = OUT / "gui"
+README_PICTURES = SCRIPTS / "pictures" / "path"
 SCREEN = (1920, 3700)
 """Tall enough for every panel of the Physics tab at once."""
 WINDOW = (1280, 960)
 SECONDS = 600
 """The whole scenario takes about three minutes; a window that hangs must not hold us up."""
 ACTION_SECONDS = 30
+RING = 16
+"""Radius (pixels) of what marks the place of a click in a picture."""
 HARMLESS = ("ALSA", "AL lib")
 
 
@@ -44,7 +47,8 @@ def gui(zip_file: Path, words: Sequence[str] = ()) -> None:
 
     Args:
         zip_file: The extension.
-        words: Only steps whose names hold one of these; all of them if there are none.
+        words: Only steps whose names hold one of these; all of them if there are none. Or the name of a scenario of its own,
+            first: "path", the way of a new user, whose pictures --readme puts into scripts/pictures/path.
 
     Raises:
         Failed: A step failed; the table says which.
@@ -61,6 +65,8 @@ def gui(zip_file: Path, words: Sequence[str] = ()) -> None:
     steps += closing_steps(code)
     print(table(steps))
     print(f"pictures: {FOLDER.relative_to(ROOT)}/*.png")
+    if "--readme" in words:
+        renew_readme()
     bad = [step["name"] for step in steps if step["state"] not in {"ok", "skipped"}]
     if bad:
         raise Failed(f"in the window: {', '.join(bad)}")
@@ -75,8 +81,10 @@ def install(zip_file: Path) -> None:
 
 def blender(words: list[object], **variables: str) -> list[str]:
     """The command that runs Blender in the folder, with a profile of our own."""
-    profile = str(FOLDER / "profile")
-    return debian.inside(words, shared=[ROOT], BLENDER_USER_RESOURCES=profile, **variables)
+    for name in ("profile", "home"):
+        (FOLDER / name).mkdir(exist_ok=True)
+    own = {"BLENDER_USER_RESOURCES": str(FOLDER / "profile"), "HOME": str(FOLDER / "home")}
+    return debian.inside(words, shared=[ROOT], **own, **variables)
 
 
 @contextlib.contextmanager
@@ -133,6 +141,16 @@ def serve(process: subprocess.Popen, display: str, until: float) -> int | None:
     return None
 
 
+def renew_readme() -> None:
+    """Put small copies of the path's pictures into scripts/pictures/path."""
+    README_PICTURES.mkdir(parents=True, exist_ok=True)
+    for picture in sorted(FOLDER.glob("path_*.png")):
+        target = README_PICTURES / f"{picture.stem.removeprefix('path_')}.jpg"
+        command = ["convert", picture, "-quality", 84, "-strip", target]
+        run(debian.inside(command, shared=[ROOT]), timeout=ACTION_SECONDS)
+        print(f"{target.relative_to(ROOT)}: {target.stat().st_size / 1000:.0f} kB")
+
+
 def act(request: dict, display: str) -> None:
     """Do one thing that Blender asked for: a key, a text, a move of the mouse, a photograph."""
     for command in commands(request):
@@ -157,7 +175,13 @@ def commands(request: dict) -> list[list[object]]:
     if kind == "photo":
         left, top, width, height = request["part"] or (0, 0, *WINDOW)
         part = ["-crop", f"{width}x{height}+{left}+{top}", "+repage"]
-        return [["import", "-window", "root", *part, FOLDER / f"{request['name']}.png"]]
+        picture = FOLDER / f"{request['name']}.png"
+        taken = [["import", "-window", "root", *part, picture]]
+        if request.get("mark"):
+            x, y = request["mark"][0] - left, request["mark"][1] - top
+            ring = ["-fill", "none", "-stroke", "#ff9900", "-strokewidth", 3]
+            taken.append(["mogrify", *ring, "-draw", f"circle {x},{y} {x + RING},{y}", picture])
+        return taken
     raise ValueError(f"{kind!r} is nothing that can be done")
 
 

@@ -21,7 +21,7 @@ from .polling import can_simulate, cloths_of, is_free
 
 _TICK = 0.02
 """Seconds between two looks at the worker."""
-_PATIENCE, _MOST_PATIENCE = 0.03, 0.3
+_PATIENCE, _MOST_PATIENCE = 0.03, 0.5
 """Seconds that one look may take, in which the window cannot answer: short frames are baked several at a look. Where drawing
 takes longer, a look may take as long as drawing, up to the second number: else slow drawing would slow the bake."""
 

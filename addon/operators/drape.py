@@ -77,14 +77,15 @@ def _below(context: Context) -> list[bpy.types.Object]:
     found = [
         obj
         for obj in context.selected_objects
-        if obj.type == "MESH" and obj.library is None and not obj.boucle.enabled and obj.data.polygons
+        if obj.type == "MESH"
+        and obj.library is None
+        and not obj.boucle.enabled
+        and obj.data.polygons
     ]
     return sorted(found, key=lambda obj: obj.name)
 
 
-def _box(
-    objects: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph
-) -> tuple[Vector, Vector]:
+def _box(objects: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> tuple[Vector, Vector]:
     """The least and the greatest corner (m, world space) of what is seen of the objects."""
     shown = [obj.evaluated_get(depsgraph) for obj in objects]
     corners = [one.matrix_world @ Vector(corner) for one in shown for corner in one.bound_box]

@@ -311,7 +311,6 @@ def test_without_a_cloth_no_handler_does_any_work(blender):
 
 
 def choose_who_counts_the_steps():
-    import bpy
     from cloths import add_cloth, play
 
     obj = add_cloth()

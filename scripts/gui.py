@@ -25,8 +25,12 @@ README_PICTURES = SCRIPTS / "pictures" / "path"
 SCREEN = (1920, 3700)
 """Tall enough for every panel of the Physics tab at once."""
 WINDOW = (1280, 960)
-SECONDS = 600
-"""The whole scenario takes about three minutes; a window that hangs must not hold us up."""
+SECONDS = 900
+"""The whole scenario takes about five minutes; a window that hangs must not hold us up."""
+LONG_SECONDS = 2400
+PARTS = {"path": 1, "long": 3}
+"""Scenarios of their own and how many Blenders they take, one after another."""
+KILLED = -9
 ACTION_SECONDS = 30
 RING = 16
 """Radius (pixels) of what marks the place of a click in a picture."""
@@ -48,26 +52,30 @@ def gui(zip_file: Path, words: Sequence[str] = ()) -> None:
     Args:
         zip_file: The extension.
         words: Only steps whose names hold one of these; all of them if there are none. Or the name of a scenario of its own,
-            first: "path", the way of a new user, whose pictures --readme puts into scripts/pictures/path.
+            first: "path", the way of a new user, whose pictures --readme puts into scripts/pictures/path; "long", a bake of
+            minutes that is stopped, resumed and killed.
 
     Raises:
         Failed: A step failed; the table says which.
     """
     shutil.rmtree(FOLDER, ignore_errors=True)
-    (FOLDER / "talk").mkdir(parents=True)
+    FOLDER.mkdir(parents=True)
     if words[:1] == ["path"]:
         shutil.copy2(zip_file, FOLDER)  # it is installed in the window
     else:
         install(zip_file)
-    with heading("Play the scenario in Blender's window"), x_server() as display:
-        code = play(display, words)
-    steps = json.loads((FOLDER / "talk" / "steps.json").read_text(encoding="utf-8"))
-    steps += closing_steps(code)
+    steps = []
+    for part in range(PARTS.get(words[0], 1) if words else 1):
+        own = [words[0], part] if words and words[0] in PARTS else words
+        with heading("Play the scenario in Blender's window"), x_server() as display:
+            code = play(display, own)
+        steps += json.loads((FOLDER / "talk" / "steps.json").read_text(encoding="utf-8"))
+        steps += closing_steps(code)
     print(table(steps))
     print(f"pictures: {FOLDER.relative_to(ROOT)}/*.png")
     if "--readme" in words:
         renew_readme()
-    bad = [step["name"] for step in steps if step["state"] not in {"ok", "skipped"}]
+    bad = [step["name"] for step in steps if step["state"] not in {"ok", "skipped", "killed"}]
     if bad:
         raise Failed(f"in the window: {', '.join(bad)}")
 
@@ -109,6 +117,9 @@ def play(display: str, chosen: Sequence[str]) -> int | None:
     from_below = SCREEN[1] - WINDOW[1]  # as Blender counts
     geometry = ["--window-geometry", 0, from_below, *WINDOW]
     talk = FOLDER / "talk"
+    shutil.rmtree(talk, ignore_errors=True)
+    talk.mkdir()
+    seconds = LONG_SECONDS if chosen[:1] == ["long"] else SECONDS
     words = ["blender", *geometry, "--python", SCRIPTS / "gui_inside.py", "--", talk, *chosen]
     with (FOLDER / "blender.log").open("w") as log:
         process = subprocess.Popen(
@@ -119,7 +130,7 @@ def play(display: str, chosen: Sequence[str]) -> int | None:
             start_new_session=True,
         )
         try:
-            return serve(process, display, time.monotonic() + SECONDS)
+            return serve(process, display, time.monotonic() + seconds)
         finally:
             stop(process)
 
@@ -132,7 +143,13 @@ def serve(process: subprocess.Popen, display: str, until: float) -> int | None:
         code = process.poll()
         text = requests.read_text(encoding="utf-8") if requests.exists() else ""
         for line in text.split("\n")[done:-1]:
-            act(json.loads(line), display)
+            request = json.loads(line)
+            if request["do"] == "kill":
+                stop(process)
+                steps = requests.parent / "steps.json"
+                steps.write_text(steps.read_text().replace("not run", "killed"), encoding="utf-8")
+                return KILLED
+            act(request, display)
             done += 1
             (requests.parent / f"done-{done}").touch()
         if code is not None:
@@ -187,7 +204,11 @@ def commands(request: dict) -> list[list[object]]:
 
 def closing_steps(code: int | None) -> list[dict]:
     """What is judged from outside: how Blender ended, and what its console says."""
-    ends = {0: ("ok", "exit code 0"), None: ("failed", f"stopped after {SECONDS} s")}
+    ends = {
+        0: ("ok", "exit code 0"),
+        KILLED: ("ok", "killed, as asked"),
+        None: ("failed", "stopped: the time was up"),
+    }
     state, detail = ends.get(code, ("failed", f"exit code {code}"))
     text = (FOLDER / "blender.log").read_text(encoding="utf-8", errors="replace")
     told = [line for line in text.splitlines() if is_complaint(line)]

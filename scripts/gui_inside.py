@@ -25,8 +25,8 @@ sys.path.insert(0, str(Path(__file__).parent))  # Blender runs this file from it
 from gui_scenario import Skipped
 
 Step = Generator[Any, None, str | None]
-OWN_WORDS = ("path",)
-"""Scenarios that are played only if asked for by name: gui_NAME.py."""
+OWN_WORDS = ("path", "long")
+"""Scenarios that are played only if asked for by name: gui_NAME.py; a number after it is the part for this Blender."""
 USUAL = ("gui_scenario", "gui_overlay", "gui_live")
 """What is played otherwise, in this order."""
 PAUSE = 0.05
@@ -105,7 +105,7 @@ def name_of(step: Callable[[], Step]) -> str:
 def chosen_steps(words: Sequence[str]) -> list[Callable[[], Step]]:
     """The steps of the named scenario, or those of the usual one whose names hold one of the words."""
     if words and words[0] in OWN_WORDS:
-        return [*importlib.import_module(f"gui_{words[0]}").STEPS]
+        return [*importlib.import_module(f"gui_{words[0]}").PHASES[int(words[1])]]
     steps = [step for name in USUAL for step in importlib.import_module(name).STEPS]
     return [step for step in steps if not words or any(word in name_of(step) for word in words)]
 

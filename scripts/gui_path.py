@@ -188,4 +188,4 @@ def told() -> str:
     return f"{Way.clicks} clicks, {Way.seconds():.0f} s"
 
 
-STEPS = (drop_the_zip_on_the_window, add_a_cloth_from_the_menu, play, bake, render)
+PHASES = ((drop_the_zip_on_the_window, add_a_cloth_from_the_menu, play, bake, render),)

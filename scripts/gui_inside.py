@@ -27,7 +27,7 @@ from gui_scenario import Skipped
 Step = Generator[Any, None, str | None]
 OWN_WORDS = ("path", "long")
 """Scenarios that are played only if asked for by name: gui_NAME.py; a number after it is the part for this Blender."""
-USUAL = ("gui_scenario", "gui_overlay", "gui_live")
+USUAL = ("gui_scenario", "gui_labels", "gui_overlay", "gui_live")
 """What is played otherwise, in this order."""
 PAUSE = 0.05
 """Seconds between two looks for an answer."""

@@ -161,7 +161,7 @@ def bake() -> Step:
     yield from click(button)
     yield from wait_for(lambda: not bpy.ops.boucle.bake.poll(), "the bake begun")
     corner = beside(button, -300, -300)
-    yield from picture("4_bake", corner, button)
+    yield from picture("4_bake", corner, button, (window().width - corner[0], PICTURE[1]))
     yield from wait_for(bpy.ops.boucle.bake.poll, "baked")
     status = bpy.data.objects["Drape"].boucle.status
     assert status.startswith(f"Baked: frames 1 to {FRAMES}"), status

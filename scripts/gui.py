@@ -53,7 +53,7 @@ def gui(zip_file: Path, words: Sequence[str] = ()) -> None:
         zip_file: The extension.
         words: Only steps whose names hold one of these; all of them if there are none. Or the name of a scenario of its own,
             first: "path", the way of a new user, whose pictures --readme puts into scripts/pictures/path; "long", a bake of
-            minutes that is stopped, resumed and killed.
+            minutes that is stopped, resumed and killed (--frames=N: of fewer than 250).
 
     Raises:
         Failed: A step failed; the table says which.
@@ -66,7 +66,7 @@ def gui(zip_file: Path, words: Sequence[str] = ()) -> None:
         install(zip_file)
     steps = []
     for part in range(PARTS.get(words[0], 1) if words else 1):
-        own = [words[0], part] if words and words[0] in PARTS else words
+        own = [words[0], part, *words[1:]] if words and words[0] in PARTS else words
         with heading("Play the scenario in Blender's window"), x_server() as display:
             code = play(display, own)
         steps += json.loads((FOLDER / "talk" / "steps.json").read_text(encoding="utf-8"))

@@ -13,6 +13,7 @@ import os
 import random
 import shutil
 import struct
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -32,11 +33,10 @@ from gui_scenario import (
     over_view,
 )
 
-COLUMNS, END = 128, 250
-STOPPED_AMONG = (20, 60)
-"""Frames between which Esc is pressed."""
-KILLED_AMONG = (10, 60)
-"""Seconds after the start of a bake between which Blender is killed."""
+COLUMNS = 128
+END = next((int(word[9:]) for word in sys.argv if word.startswith("--frames=")), 250)
+STOPPED_AMONG, KILLED_AMONG = (0.08, 0.24), (0.1, 0.6)
+"""Parts of the bake between which Esc is pressed, and between which Blender is killed."""
 WAIT = 1500.0
 MOST_GROWTH = 0.1
 """Of the memory, from the bake's second quarter to its last."""
@@ -82,6 +82,11 @@ def digest() -> str:
     return hashlib.sha256(cache().read_bytes()).hexdigest()
 
 
+def some_frame(among: tuple[float, float]) -> int:
+    """A frame between two parts of the bake, another one every time."""
+    return 1 + round(END * random.SystemRandom().uniform(*among))
+
+
 def quiet() -> None:
     """No viewport: here software draws, on the cores that simulate."""
     area("VIEW_3D").type = "CONSOLE"
@@ -107,7 +112,7 @@ def a_sheet_and_a_ball_that_moves_through_it() -> Step:
         bpy.ops.mesh.primitive_uv_sphere_add(radius=0.4, segments=32, ring_count=16)
         ball = bpy.context.object
         ball.modifiers.new("Collision", "COLLISION")
-        for frame, y in ((1, -1.5), (60, 0.6), (120, -0.6), (180, 0.8), (END, -1.0)):
+        for frame, y in ((1, -1.5), (60, 0.6), (120, -0.6), (180, 0.8), (250, -1.0)):
             ball.location = (0.2, y, -0.3)
             ball.keyframe_insert("location", frame=frame)
         bpy.ops.boucle.add_cloth(vertices_x=COLUMNS, vertices_y=COLUMNS)
@@ -119,9 +124,9 @@ def a_sheet_and_a_ball_that_moves_through_it() -> Step:
 def bake_until_escape() -> Step:
     """Esc at a random frame; what is there plays."""
     yield over_view()
-    quiet()
-    at = random.SystemRandom().randint(*STOPPED_AMONG)
+    at = some_frame(STOPPED_AMONG)
     yield from begin_bake(resume=False)
+    quiet()
     until = time.monotonic() + WAIT
     while bpy.context.scene.frame_current < at:
         assert time.monotonic() < until
@@ -132,6 +137,7 @@ def bake_until_escape() -> Step:
         assert time.monotonic() - pressed < 30.0, "the bake goes on 30 s after Esc"
         yield 0.02
     took = time.monotonic() - pressed
+    area("CONSOLE").type = "VIEW_3D"
     last = count_of(cache())
     status = cloth_of_scene().boucle.status
     assert status.startswith(f"Partly baked: frames 1 to {last} of {END}"), status
@@ -149,10 +155,10 @@ def lowest(frame: int) -> float:
 def resume_and_measure() -> Step:
     """To the end, with the window's answers and the memory."""
     at_rest, said_at_rest = yield from answers()
-    quiet()
     first = count_of(cache())
     held: list[float] = []
     yield from begin_bake(resume=True)
+    quiet()
     measured, began = Answers(), time.monotonic()
     yield from until_done(lambda: held.append(memory()))
     seconds = time.monotonic() - began
@@ -175,15 +181,16 @@ def bake_until_killed() -> Step:
     shutil.rmtree(folder() / "boucle_cache")
     bpy.ops.wm.open_mainfile(filepath=str(folder() / "long.blend"))
     yield 1.0
-    quiet()
     yield from begin_bake(resume=False)
-    seconds = random.SystemRandom().uniform(*KILLED_AMONG)
-    until = time.monotonic() + seconds
-    log = folder() / "frame.txt"
-    while time.monotonic() < until:
+    quiet()
+    at, log = some_frame(KILLED_AMONG), folder() / "frame.txt"
+    until = time.monotonic() + WAIT
+    while bpy.context.scene.frame_current < at:
+        assert time.monotonic() < until
         # The scene comes to a frame when the one before it is written.
         log.write_text(str(bpy.context.scene.frame_current - 1), encoding="ascii")
         yield 0.0
+    yield random.SystemRandom().uniform(0.0, 0.5)
     yield {"do": "kill"}
     yield 60.0
     raise AssertionError("nobody killed this Blender")
@@ -198,8 +205,8 @@ def open_what_is_left_and_resume() -> Step:
     yield 1.0
     status = cloth_of_scene().boucle.status
     assert status.startswith(f"Partly baked: frames 1 to {kept} of {END}"), status
-    quiet()
     yield from begin_bake(resume=True)
+    quiet()
     yield from until_done()
     wanted = json.loads((folder() / "told.json").read_text(encoding="utf-8"))["digest"]
     assert count_of(cache()) == END

@@ -9,6 +9,7 @@ class Operators:
     ADD_CURTAIN = "boucle.add_curtain"
     ADD_CAPE = "boucle.add_cape"
     ADD_TABLECLOTH = "boucle.add_tablecloth"
+    DRAPE = "boucle.drape"
     ENABLE = "boucle.enable"
     DISABLE = "boucle.disable"
     BAKE = "boucle.bake"

@@ -9,11 +9,12 @@ done-N. What became of each step stands in steps.json from the first moment on.
 
 from __future__ import annotations
 
+import importlib
 import json
 import sys
 import time
 import traceback
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Generator, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +22,13 @@ import bpy
 
 sys.path.insert(0, str(Path(__file__).parent))  # Blender runs this file from its text alone
 
-from gui_scenario import STEPS, Skipped
+from gui_scenario import Skipped
 
 Step = Generator[Any, None, str | None]
+OWN_WORDS = ("path", "long")
+"""Scenarios that are played only if asked for by name: gui_NAME.py; a number after it is the part for this Blender."""
+USUAL = ("gui_scenario", "gui_labels", "gui_overlay", "gui_live")
+"""What is played otherwise, in this order."""
 PAUSE = 0.05
 """Seconds between two looks for an answer."""
 
@@ -97,11 +102,18 @@ def name_of(step: Callable[[], Step]) -> str:
     return step.__name__.replace("_", " ")
 
 
+def chosen_steps(words: Sequence[str]) -> list[Callable[[], Step]]:
+    """The steps of the named scenario, or those of the usual one whose names hold one of the words."""
+    if words and words[0] in OWN_WORDS:
+        return [*importlib.import_module(f"gui_{words[0]}").PHASES[int(words[1])]]
+    steps = [step for name in USUAL for step in importlib.import_module(name).STEPS]
+    return [step for step in steps if not words or any(word in name_of(step) for word in words)]
+
+
 def main(folder: str, *words: str) -> None:
     """Start the play as soon as the window stands."""
     bpy.context.preferences.view.show_splash = False
-    chosen = [s for s in STEPS if not words or any(word in name_of(s) for word in words)]
-    player = Player(Path(folder), chosen)
+    player = Player(Path(folder), chosen_steps(words))
     bpy.app.timers.register(player.tick, first_interval=2.0, persistent=True)
 
 

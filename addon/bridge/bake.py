@@ -19,6 +19,7 @@ from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, sentence_of
 from ..core.store import Plan, Store, Stores
 from . import (
+    bake_view,
     cache,
     colliders,
     live,
@@ -141,11 +142,14 @@ class Bake:
                 forces=pushing.sample(depsgraph), winds=blowing.sample(depsgraph)
             )
 
+        paths = (store.files.pc2 for store in self.stores.each)
+        bake_view.begin(dict(zip(self.uids, paths, strict=True)))
         try:
             yield from core_bake.bake(
                 solver, self.stores, moment_at, self.options.resume, native.InternalError
             )
         finally:
+            bake_view.end()
             self._attach()
 
     def _describe(

@@ -27,7 +27,9 @@ def forget() -> None:
 
 
 def as_text(obj: bpy.types.Object) -> str:
-    """The problems as a JSON list; empty if there are none or nobody has checked."""
+    """The problems as a JSON list; empty if nobody has checked."""
+    if obj.session_uid not in _found:
+        return ""
     rows = [
         {
             "severity": problem.severity.name,
@@ -35,9 +37,9 @@ def as_text(obj: bpy.types.Object) -> str:
             "selects": bool(problem.vertices),
             "passes_through": problem.passes_through,
         }
-        for problem in _found.get(obj.session_uid, ())
+        for problem in _found[obj.session_uid]
     ]
-    return json.dumps(rows) if rows else ""
+    return json.dumps(rows)
 
 
 def problem(obj: bpy.types.Object, number: int) -> Problem:

@@ -29,8 +29,10 @@ class Legend(NamedTuple):
 
 def of(name: str, one: Quantity, low: float, high: float) -> Legend:
     """The legend of an object whose colours span a range."""
-    unit = f" ({one.unit})" if one.unit else ""
-    return Legend(f"{name}: {one.label}{unit}", tuple(heat_map.ticks(low, high, one.factor)))
+    if not one.unit:
+        return Legend(f"{name}: {one.label}", tuple(heat_map.whole_ticks(low, high)))
+    ticks = heat_map.ticks(low, high, one.factor)
+    return Legend(f"{name}: {one.label} ({one.unit})", tuple(ticks))
 
 
 def unknown(name: str, one: Quantity) -> Legend:

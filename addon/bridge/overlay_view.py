@@ -86,6 +86,8 @@ def heat_map_of(
         return None
     settings = obj.boucle
     low, high = heat_map.span(values)
+    if not one.unit:
+        high = max(high, 1.0)  # it is counted
     if settings.overlay_range == "manual":
         low, high = settings.overlay_minimum, settings.overlay_maximum
     colors = heat_map.colors(values, low, high, settings.overlay_opacity)

@@ -7,7 +7,7 @@ import bpy
 from .. import native
 from ..core import drift, points, scene_json
 from ..core.refusal import Refusal, sentence_of
-from . import live, mesh_arrays, rest, runtime, settings, simulation
+from . import certificate, live, mesh_arrays, rest, runtime, settings, simulation
 
 LARGEST = 20_000
 """Vertices up to which a panel may build a solver while it draws (about 50 ms)."""
@@ -16,11 +16,11 @@ _known: dict[int, tuple[str, str]] = {}
 
 
 def describe(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
-    """The safe time step of an explicit integrator and what it means for a frame; any step is safe for the others."""
+    """The safe time step of an explicit integrator and what it means for a frame; what a frame took with the others."""
     session = live.session_of(obj)
     fps = settings.world(scene).fps
     if settings.is_implicit(obj.boucle.integrator):
-        return "Any time step is stable with this integrator"
+        return _taken(obj, scene)
     if session is not None and session.solver is not None and not runtime.busy:
         return _words(session.solver, fps)
     try:
@@ -52,6 +52,14 @@ def _compute(obj: bpy.types.Object, description: dict, fps: float) -> str:
         return _words(simulation.maker(description, [simulation.mesh(obj, world)])(), fps)
     except native.FAILURES as error:
         return sentence_of(error)
+
+
+def _taken(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:
+    """For an implicit integrator, to which every step is safe."""
+    count = certificate.row_of(obj, scene).get("substeps")
+    if not count:
+        return "Any time step is stable with this integrator"
+    return f"This frame took {count} step{'s' if count > 1 else ''}; any step is stable"
 
 
 def _words(solver: object, fps: float) -> str:

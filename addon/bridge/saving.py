@@ -39,6 +39,7 @@ def after_save(scene: bpy.types.Scene) -> None:
 def after_load() -> None:
     """Tidy up what a crash or an automatic save left: frames in meshes, temporary files, shared identities."""
     registry.forget()
+    silent = []
     for obj in registry.local_cloths():
         rest.put_back(obj.data)
         vertex_attributes.hide(obj.data)
@@ -48,10 +49,20 @@ def after_load() -> None:
         path = slot.played(found.cache)
         if not path or cache_paths.is_live(path):
             slot.silence(found.cache)
+            silent.append(obj)
+    _find_again(silent)
     cache.ensure_identity()
     cache.follow_files()
     for obj in registry.cloths_of(bpy.context.scene):
         live.show_attributes(obj, bpy.context.scene)
+
+
+def _find_again(cloths: list[bpy.types.Object]) -> None:
+    """A file that was saved before its bake, or killed in it, plays what is there, if it is of these very settings."""
+    found = [obj for obj in cloths if obj.override_library is None and cache.reattach(obj)]
+    changed = [obj for obj in found if cache.drift_of(obj, bpy.context.scene, in_full=True)]
+    for obj in changed:
+        cache.detach(obj)
 
 
 def adopt(obj: bpy.types.Object) -> None:

@@ -113,6 +113,14 @@ def ticks(low: float, high: float, factor: float = 1.0, count: int = 5) -> list[
     return [Tick(part, text) for part, text in zip(parts, texts, strict=True)]
 
 
+def whole_ticks(low: float, high: float) -> list[Tick]:
+    """Ticks of something that is counted: whole numbers at equal steps, where the range has such."""
+    for steps in (4, 5, 3, 2, 1):
+        if low.is_integer() and high > low and ((high - low) / steps).is_integer():
+            return ticks(low, high, count=steps + 1)
+    return ticks(low, high)
+
+
 def _plain(number: float, digits: int) -> str:
     text = f"{number:.{digits}f}"
     text = text.rstrip("0").rstrip(".") if "." in text else text

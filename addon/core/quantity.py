@@ -29,7 +29,7 @@ class Quantity(NamedTuple):
     """The method of a simulation that tells it."""
     label: str
     unit: str
-    """In which the legend tells it."""
+    """In which the legend tells it; empty where it is counted."""
     factor: float
     """What makes that unit of a value."""
 

@@ -21,8 +21,9 @@ from .polling import can_simulate, cloths_of, is_free
 
 _TICK = 0.02
 """Seconds between two looks at the worker."""
-_PATIENCE = 0.03
-"""Seconds that one look may take, in which the window cannot answer: short frames are baked several at a look."""
+_PATIENCE, _MOST_PATIENCE = 0.03, 0.5
+"""Seconds that one look may take, in which the window cannot answer: short frames are baked several at a look. Where drawing
+takes longer, a look may take as long as drawing, up to the second number: else slow drawing would slow the bake."""
 
 
 class _Baking:
@@ -58,11 +59,15 @@ class _Baking:
         self._bakes, notes = self._make_bakes(context)
         self._count = len(self._bakes)
         self._is_stopping = False
+        self._looked = time.monotonic()
         self._current: Bake | None = None
         self._steps: Iterator[Step] | None = None
         self._step: Step | None = None
         self._worker = Worker()
         self._messages = [("WARNING", note) for note in notes]
+        if context.screen is not None and context.screen.is_animation_playing:
+            # Both would set the scene's frame.
+            bpy.ops.screen.animation_cancel(restore_frame=False)
         context.window_manager.progress_begin(0.0, 1.0)
         self._timer: Timer = context.window_manager.event_timer_add(_TICK, window=context.window)
         context.window_manager.modal_handler_add(self)
@@ -117,16 +122,20 @@ class _Baking:
 
     def _pull(self, context: Context) -> bool:
         """Do what can be done in a moment; False at the end of the last bake."""
-        until = time.monotonic() + _PATIENCE
-        while True:
-            if not self._worker.is_done(max(0.0, until - time.monotonic())):
-                return True
-            if not self._next_step():
-                return False
-            self._tell(context)
-            self._worker.begin(self._step)
-            if time.monotonic() > until:
-                return True
+        began = time.monotonic()
+        until = began + min(max(began - self._looked, _PATIENCE), _MOST_PATIENCE)
+        try:
+            while True:
+                if not self._worker.is_done(max(0.0, until - time.monotonic())):
+                    return True
+                if not self._next_step():
+                    return False
+                self._tell(context)
+                self._worker.begin(self._step)
+                if time.monotonic() > until:
+                    return True
+        finally:
+            self._looked = time.monotonic()
 
     def _next_step(self) -> bool:
         """Ask for the next step, of the next cloth if this one is done."""

@@ -43,15 +43,7 @@ class _Starter(AddObjectHelper):
 
     def make(self, context: Context, name: str, grid: Grid, pins: list[int]) -> bpy.types.Object:
         """The object, pinned, with the settings that fit its edges."""
-        mesh = bpy.data.meshes.new(name)
-        mesh.from_pydata(grid.points, [], list(grid.faces()))
-        uv = mesh.uv_layers.new(name="UVMap")
-        size = max(grid.columns, grid.rows) - 1
-        for loop, corner in zip(mesh.loops, uv.data, strict=True):
-            row, column = divmod(loop.vertex_index, grid.columns)
-            corner.uv = (column / size, row / size)
-        mesh.shade_smooth()
-        obj = object_data_add(context, mesh, operator=self)
+        obj = object_data_add(context, mesh_of(name, grid), operator=self)
         if pins:
             obj.vertex_groups.new(name=PIN_GROUP).add(pins, 1.0, "REPLACE")
             obj.boucle.pin_group = PIN_GROUP
@@ -60,6 +52,19 @@ class _Starter(AddObjectHelper):
         cloth.set_range(obj, context.scene)
         obj.boucle.enabled = True
         return obj
+
+
+def mesh_of(name: str, grid: Grid) -> bpy.types.Mesh:
+    """The mesh of a grid, smooth, with a UV map."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(grid.points, [], list(grid.faces()))
+    uv = mesh.uv_layers.new(name="UVMap")
+    size = max(grid.columns, grid.rows) - 1
+    for loop, corner in zip(mesh.loops, uv.data, strict=True):
+        row, column = divmod(loop.vertex_index, grid.columns)
+        corner.uv = (column / size, row / size)
+    mesh.shade_smooth()
+    return mesh
 
 
 class BOUCLE_OT_add_flag(_Starter, Operator):
@@ -239,6 +244,8 @@ class BOUCLE_MT_add(Menu):
             Operators.ADD_FLAG, Operators.ADD_CURTAIN, Operators.ADD_CAPE, Operators.ADD_TABLECLOTH,
         ):  # fmt: skip
             self.layout.operator(name)
+        self.layout.separator()
+        self.layout.operator(Operators.DRAPE)
 
 
 def draw_menu(menu: Menu, _context: Context) -> None:

@@ -61,17 +61,23 @@ class BOUCLE_PT_cloth(PhysicsPanel, Panel):
     def draw(self, context: Context) -> None:
         """Lay out."""
         settings = context.object.boucle
+        row = self.layout.row(align=True)
+        row.operator(Operators.BAKE).resume = False
+        if settings.is_baked:
+            row.operator(Operators.FREE_BAKE)
         column = self.column(settings)
         column.prop(settings, "mass_mode")
-        by_area = settings.mass_mode == "density"
-        column.prop(settings, "density" if by_area else "mass_per_vertex")
+        if settings.mass_mode == "density":
+            column.prop(settings, "density", text="Density (kg/m²)")
+        else:
+            column.prop(settings, "mass_per_vertex", text="Mass (kg)")
         column.prop(settings, "speed")
         self.layout.operator(Operators.CHECK, icon="CHECKMARK")
         if any(modifier.type == "CLOTH" for modifier in context.object.modifiers):
             self.layout.operator(Operators.COPY_FROM_CLOTH, icon="COPYDOWN")
-        row = self.layout.row(align=True)
-        row.operator(Operators.ADD_PROXY)
-        row.operator(Operators.DRIVE_WITH_PROXY)
+        column = self.layout.column(align=True)
+        column.operator(Operators.ADD_PROXY)
+        column.operator(Operators.DRIVE_WITH_PROXY)
 
 
 def draw_button(panel: Panel, context: Context) -> None:

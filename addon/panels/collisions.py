@@ -44,7 +44,7 @@ class BOUCLE_PT_object_collisions(PhysicsPanel, Panel):
         column = self.column(obj.boucle)
         column.active = obj.boucle.object_collision
         column.prop_search(obj.boucle, "collision_group", obj, "vertex_groups")
-        column.prop(obj.boucle, "collision_collection")
+        column.prop(obj.boucle, "collision_collection", text="Collection")
 
 
 class BOUCLE_PT_self_collisions(PhysicsPanel, Panel):

@@ -25,7 +25,7 @@ class BOUCLE_PT_field_weights(PhysicsPanel, Panel):
         """Lay out."""
         weights = context.object.boucle.field_weights
         column = self.column(context.object.boucle)
-        column.prop(weights, "collection")
+        column.prop(weights, "collection", text="Collection")
         for name in _WEIGHTS:
             column.prop(weights, name, slider=True)
         for sentence in weights.unsupported.splitlines():

@@ -27,8 +27,10 @@ class BOUCLE_PT_forces(PhysicsPanel, Panel):
         wind.active = settings.use_wind
         wind.prop(settings, "wind_velocity")
         wind.prop(settings, "wind_law")
-        per_vertex = settings.wind_law == "vertex"
-        wind.prop(settings, "wind_coefficient" if per_vertex else "wind_air_density")
+        if settings.wind_law == "vertex":
+            wind.prop(settings, "wind_coefficient", text="Drag (N·s/m)")
+        else:
+            wind.prop(settings, "wind_air_density", text="Density (kg/m³)")
         wind.prop_search(settings, "wind_group", obj, "vertex_groups")
 
 

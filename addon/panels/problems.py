@@ -25,9 +25,12 @@ class BOUCLE_PT_problems(PhysicsPanel, Panel):
         layout = self.layout
         text = context.object.boucle.problems
         if not text:
-            layout.label(text="None found; press Check")
+            layout.label(text="Not checked yet")
             return
-        for number, row in enumerate(json.loads(text)):
+        rows = json.loads(text)
+        if not rows:
+            layout.label(text="No problems found", icon="CHECKMARK")
+        for number, row in enumerate(rows):
             box = layout.box()
             draw_text(box, row["sentence"], context, icon=_ICONS[row["severity"]])
             buttons = box.row()

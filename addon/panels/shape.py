@@ -24,8 +24,9 @@ class BOUCLE_PT_shape(PhysicsPanel, Panel):
         column.prop_search(obj.boucle, "pin_group", obj, "vertex_groups")
         pins = column.column()
         pins.active = bool(obj.boucle.pin_group)
-        for name in ("pin_strength", "pin_stiffness", "pin_damping"):
-            pins.prop(obj.boucle, name)
+        pins.prop(obj.boucle, "pin_strength")
+        pins.prop(obj.boucle, "pin_stiffness", text="Stiffness (N/m)")
+        pins.prop(obj.boucle, "pin_damping")
 
 
 CLASSES = (BOUCLE_PT_shape,)

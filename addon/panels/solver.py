@@ -23,12 +23,15 @@ class BOUCLE_PT_solver(PhysicsPanel, Panel):
         column.prop(settings, "integrator")
         if settings.is_implicit:
             quality = column.column()
-            quality.active = settings.substeps == 0 and settings.time_step == 0.0
+            quality.active = settings.step_mode == "auto"
             quality.prop(settings, "quality")
             if settings.quality == "custom":
                 quality.prop(settings, "tolerance")
-        column.prop(settings, "substeps")
-        column.prop(settings, "time_step")
+        column.prop(settings, "step_mode")
+        if settings.step_mode == "substeps":
+            column.prop(settings, "substeps")
+        elif settings.step_mode == "time_step":
+            column.prop(settings, "time_step", text="Time Step (s)")
         if not settings.is_implicit:
             column.prop(settings, "allow_unstable")
         draw_text(self.layout, settings.safe_step, context, icon="TIME")

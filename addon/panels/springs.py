@@ -19,7 +19,7 @@ class BOUCLE_PT_springs(PhysicsPanel, Panel):
     def draw(self, context: Context) -> None:
         """Lay out."""
         settings = context.object.boucle
-        self.column(settings).prop(settings, "stiffness_from")
+        self.column(settings).prop(settings, "stiffness_from", text="Stiffness")
 
 
 class BOUCLE_PT_stiffness(PhysicsPanel, Panel):
@@ -27,7 +27,7 @@ class BOUCLE_PT_stiffness(PhysicsPanel, Panel):
 
     bl_idname = Panels.STIFFNESS
     bl_parent_id = Panels.SPRINGS
-    bl_label = "Stiffness"
+    bl_label = "Stiffness (N/m)"
     bl_order = PanelOrder.STIFFNESS
 
     def draw(self, context: Context) -> None:
@@ -43,7 +43,7 @@ class BOUCLE_PT_damping(PhysicsPanel, Panel):
 
     bl_idname = Panels.DAMPING
     bl_parent_id = Panels.SPRINGS
-    bl_label = "Damping"
+    bl_label = "Damping (N·s/m)"
     bl_order = PanelOrder.DAMPING
 
     def draw(self, context: Context) -> None:

@@ -55,12 +55,12 @@ class BOUCLE_PT_pressure(PhysicsPanel, Panel):
         settings = obj.boucle
         column = self.column(settings)
         column.active = settings.use_pressure
-        column.prop(settings, "uniform_pressure_force")
+        column.prop(settings, "uniform_pressure_force", text="Pressure (N/m²)")
         column.prop(settings, "use_pressure_volume")
         volume = column.column()
         volume.active = settings.use_pressure_volume
         volume.prop(settings, "target_volume")
-        column.prop(settings, "pressure_factor")
+        column.prop(settings, "pressure_factor", text="Scale (N/m²)")
         column.prop_search(settings, "pressure_group", obj, "vertex_groups")
 
 
@@ -82,7 +82,7 @@ class BOUCLE_PT_sewing(PhysicsPanel, Panel):
         settings = context.object.boucle
         column = self.column(settings)
         column.active = settings.use_sewing_springs
-        column.prop(settings, "sewing_force_max")
+        column.prop(settings, "sewing_force_max", text="Max Force (N)")
         column.prop(settings, "weld_distance")
         column.operator(Operators.ADD_WELD, icon="AUTOMERGE_ON")
 

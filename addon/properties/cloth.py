@@ -19,6 +19,7 @@ from .sewing import SewingProperties
 from .shape import ShapeProperties
 from .solver import SolverProperties
 from .springs import SpringProperties
+from .steps import StepProperties
 from .takes import BOUCLE_PG_take, TakeProperties
 
 
@@ -32,6 +33,7 @@ class BOUCLE_PG_cloth(
     ForceProperties,
     FieldWeightProperties,
     SolverProperties,
+    StepProperties,
     CacheProperties,
     PresetProperties,
     ProblemProperties,

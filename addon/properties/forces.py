@@ -17,7 +17,7 @@ class ForceProperties:
         name="Velocity",
         description="Velocity of the wind in the world (m/s)",
         default=(0.0, 3.0, 0.0), min=-1e4, max=1e4, soft_min=-50.0, soft_max=50.0, size=3,
-        subtype="XYZ", override=OVERRIDABLE, update=changed,
+        subtype="VELOCITY", override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     wind_law: EnumProperty(
         name="Law",

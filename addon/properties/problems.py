@@ -17,6 +17,6 @@ class ProblemProperties:
     problems: StringProperty(
         name="Problems",
         description="What the last check of this session found, as a JSON list: severity, sentence, whether it selects "
-        "vertices, and the object that the cloth passes through",
+        "vertices, and the object that the cloth passes through; empty before the first one",
         get=_read_problems, options=FIXED, override=OVERRIDABLE,
     )  # fmt: skip

@@ -183,3 +183,59 @@ def test_killed_at_any_moment_a_background_bake_goes_on_bit_equal(new_blender):
         sizes.append(min(len(data) for data in caches(folder).values()))
     assert new_blender.run(bake_in_background, folder=folder, resume=1) == ["FINISHED"]
     assert sorted(caches(folder).values()) == sorted(whole.values())
+
+
+def leave_without_saving(folder):
+    import bpy
+    from cloths import add_cloth, shown_positions
+
+    path = os.path.join(folder, "a.blend")
+    obj = add_cloth(end=6)
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.boucle.bake()
+    bpy.context.scene.frame_set(6)
+    baked = shown_positions(obj)
+
+    def opened(change=None):
+        bpy.ops.wm.open_mainfile(filepath=path)
+        obj = bpy.data.objects["Cloth"]
+        bpy.context.scene.frame_set(1)
+        if change is not None:
+            change(obj)
+            bpy.ops.wm.save_mainfile()
+            return opened()
+        bpy.context.scene.frame_set(6)
+        return obj.boucle.is_baked, shown_positions(obj) == baked
+
+    def free(_obj):
+        bpy.ops.boucle.free_bake()
+
+    kept = opened()
+    return [kept, opened(free)]
+
+
+def test_a_bake_after_the_last_save_is_found_again_until_it_is_freed(new_blender, tmp_path):
+    kept, freed = new_blender.run(leave_without_saving, folder=str(tmp_path))
+    assert kept == [True, True], "the file knows nothing of its bake, which lies beside it"
+    assert freed == [False, False]
+
+
+def change_after_the_bake(folder):
+    import bpy
+    from cloths import add_cloth
+
+    path = os.path.join(folder, "a.blend")
+    obj = add_cloth(end=6)
+    obj.boucle.stretch = 400.0
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    obj.boucle.stretch = 500.0
+    bpy.ops.boucle.bake()
+    bpy.ops.wm.open_mainfile(filepath=path)
+    obj = bpy.data.objects["Cloth"]
+    return obj.boucle.is_baked, obj.boucle.stretch, obj.boucle.status
+
+
+def test_a_bake_of_other_settings_than_those_saved_is_left_alone(new_blender, tmp_path):
+    is_baked, stretch, status = new_blender.run(change_after_the_bake, folder=str(tmp_path))
+    assert (is_baked, stretch) == (False, 400.0)
+    assert status.startswith("Not baked")

@@ -33,6 +33,7 @@ def crossed_scene():
         getattr(bpy.types, name).draw(Panel(), bpy.context)
         return drawn
 
+    out["drawn before"] = drawn_by("BOUCLE_PT_problems")
     out["clean"] = check()
     out["drawn clean"] = drawn_by("BOUCLE_PT_problems")
 
@@ -95,7 +96,8 @@ def test_the_check_finds_each_problem_and_selects_its_culprits_alone(blender):
     )
     assert "check again" in found["beyond"]
     assert found["clear"] == ""
-    assert found["drawn clean"] == ["None found; press Check"]
+    assert found["drawn before"] == ["Not checked yet"]
+    assert found["drawn clean"] == ["No problems found"]
     selecting = [row for row in found["setup"] if row["selects"]]
     assert found["drawn"].count("boucle.select_problem") == len(selecting) > 0
     assert len(found["drawn"]) > len(found["setup"])

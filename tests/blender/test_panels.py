@@ -2,7 +2,7 @@
 
 ORDER = {
     "BOUCLE_PT_cloth": ["Springs", "Shape", "Collisions", "Forces", "Solver", "Cache"],
-    "BOUCLE_PT_springs": ["Stiffness", "Damping", "Deformation"],
+    "BOUCLE_PT_springs": ["Stiffness (N/m)", "Damping (N·s/m)", "Deformation"],
     "BOUCLE_PT_collisions": ["Object Collisions", "Self Collisions"],
 }
 CLOSED = {"Shape", "Collisions", "Forces", "Cache", "Advanced"}
@@ -35,4 +35,10 @@ def test_panels_stand_in_their_order_whatever_is_registered_first(new_blender):
         assert len(set(orders)) == len(orders), f"two panels stand at the same place: {rows}"
     closed = {panel["label"] for panel in children if panel["closed"]}
     assert closed >= CLOSED
-    assert not closed & {"Springs", "Stiffness", "Damping", "Object Collisions", "Self Collisions"}
+    assert not closed & {
+        "Springs",
+        "Stiffness (N/m)",
+        "Damping (N·s/m)",
+        "Object Collisions",
+        "Self Collisions",
+    }

@@ -150,7 +150,9 @@ def draw_everything():
         "overlay_range": "manual",
     }.items():
         setattr(obj.boucle, name, value)
-    draw_panels()
+    for mode in ("substeps", "time_step", "auto"):
+        obj.boucle.step_mode = mode
+        draw_panels()
     obj.boucle.integrator = "verlet"
     obj.boucle.damping_per_kind = True
     bpy.ops.boucle.bake()
@@ -306,3 +308,44 @@ def idle_handlers():
 
 def test_without_a_cloth_no_handler_does_any_work(blender):
     assert blender.run(idle_handlers) == []
+
+
+def choose_who_counts_the_steps():
+    from cloths import add_cloth, play
+
+    obj = add_cloth()
+    settings = obj.boucle
+    shown = [(settings.step_mode, settings.substeps, settings.time_step, settings.safe_step)]
+
+    def choose(mode):
+        settings.step_mode = mode
+        shown.append((settings.step_mode, settings.substeps, round(settings.time_step, 6), ""))
+
+    choose("substeps")
+    choose("auto")
+    settings.quality = "final"
+    play(1, 3)
+    shown.append((settings.step_mode, 0, 0.0, settings.safe_step))
+    choose("substeps")
+    choose("substeps")
+    choose("time_step")
+    choose("auto")
+    settings.time_step = 0.01
+    shown.append((settings.step_mode, settings.substeps, 0.01, ""))
+    return shown
+
+
+def test_steps_are_automatic_or_one_of_two_numbers_and_begin_with_what_a_frame_took(new_blender):
+    shown = new_blender.run(choose_who_counts_the_steps)
+    assert shown[0] == ["auto", 0, 0.0, "Any time step is stable with this integrator"]
+    assert shown[1][:3] == ["substeps", 10, 0.0], "nothing is known of the frame yet"
+    assert shown[2][:3] == ["auto", 0, 0.0]
+    taken = int(re.fullmatch(r"This frame took (\d+) steps?; any step is stable", shown[3][3])[1])
+    assert taken > 1
+    assert [row[:3] for row in shown[4:]] == [
+        ["substeps", taken, 0.0],
+        ["substeps", taken, 0.0],
+        ["time_step", 0, 0.001],
+        ["auto", 0, 0.0],
+        ["time_step", 0, 0.01],
+    ]

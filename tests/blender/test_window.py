@@ -48,6 +48,7 @@ def window(cloths):
         window_manager = Manager()
         workspace = Workspace()
         window = None
+        screen = None
         scene = bpy.context.scene
         object = cloths[0]
 
@@ -292,3 +293,57 @@ def test_a_cloth_that_is_deleted_during_its_bake_ends_it_in_one_sentence(blender
     assert f'"{name}" is no Boucle cloth any more' in said[0][1]
     assert other.startswith("Baked: frames 1 to 9")
     assert busy == []
+
+
+def watch_a_bake(folder):
+    import bpy
+    from cloths import add_cloth, addon
+
+    view, obj = addon("bridge.bake_view"), add_cloth(end=4)
+    bpy.ops.wm.save_as_mainfile(filepath=f"{folder}/a.blend")
+    begun, seen = [], []
+    begin = view.begin
+
+    def watch(paths):
+        begun.append(dict(paths))
+        begin(paths)
+
+    view.begin = watch
+    scene = bpy.context.scene
+    scene.frame_set(1)
+    known = 0
+    bake = addon("bridge.bake").Bake([obj], scene)
+    for step in bake.steps():
+        if begun:
+            count, positions = view.last_frame(begun[0][obj.session_uid], known)
+            seen.append([step.frame, count, None if positions is None else len(positions)])
+            known = count
+        step.run()
+    path = begun[0][obj.session_uid]
+    again = view.last_frame(path, 4)
+    return {
+        "seen": seen,
+        "vertices": len(obj.data.vertices),
+        "again": [again[0], again[1] is None],
+        "missing": view.last_frame(path + ".gone", 0),
+        "left": [view._handle is None, view._paths],
+        "is_last": list(view.last_frame(path, 3)[1]) == [c for v in shown(obj, 4) for c in v],
+    }
+
+
+def shown(obj, frame):
+    import bpy
+
+    bpy.context.scene.frame_set(frame)
+    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    return [tuple(vertex.co) for vertex in evaluated.data.vertices]
+
+
+def test_the_frame_just_baked_can_be_drawn_while_the_bake_goes_on(new_blender, tmp_path):
+    found = new_blender.run(watch_a_bake, folder=str(tmp_path))
+    size = 3 * found["vertices"]
+    assert found["seen"] == [[2, 1, size], [3, 2, size], [4, 3, size]]
+    assert found["again"] == [4, True], "nothing new is nothing to draw anew"
+    assert found["missing"] == [0, None]
+    assert found["left"] == [True, {}]
+    assert found["is_last"]

@@ -70,3 +70,20 @@ def test_the_legend_tells_the_range_in_numbers_that_can_be_read(span, factor, te
     ticks = heat_map.ticks(*span, factor)
     assert [tick.place for tick in ticks] == [0.0, 0.25, 0.5, 0.75, 1.0]
     assert [tick.text for tick in ticks] == texts
+
+
+@pytest.mark.parametrize(
+    ("span", "texts"),
+    [
+        ((0.0, 5.0), ["0", "1", "2", "3", "4", "5"]),
+        ((0.0, 2.0), ["0", "1", "2"]),
+        ((0.0, 1.0), ["0", "1"]),
+        ((0.0, 20.0), ["0", "5", "10", "15", "20"]),
+        ((2.0, 5.0), ["2", "3", "4", "5"]),
+        ((0.0, 2.5), ["0", "0.625", "1.25", "1.875", "2.5"]),
+    ],
+)
+def test_what_is_counted_has_whole_numbers_in_its_legend(span, texts):
+    ticks = heat_map.whole_ticks(*span)
+    assert [tick.text for tick in ticks] == texts
+    assert ticks[0].place == 0.0 and ticks[-1].place == 1.0

@@ -238,6 +238,11 @@ def test_a_command_in_the_folder_gets_only_the_environment_that_it_is_given(tmp_
     assert str(tmp_path) in words[: words.index("--")]
 
 
+def test_a_command_in_the_folder_takes_its_children_along_unless_it_hears_signals_itself():
+    assert "--kill-child" in debian.inside(["true"], root=Path("/folder"))
+    assert "--fork" not in debian.inside(["true"], root=Path("/folder"), hears_signals=True)
+
+
 def test_every_request_of_the_window_has_a_program():
     crop = gui.commands({"do": "photo", "name": "live", "part": (1, 2, 30, 40)})[0]
     assert crop[:3] == ["import", "-window", "root"]

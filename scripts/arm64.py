@@ -14,7 +14,7 @@ from environment import OUT, ROOT, SCRIPTS, VENV, heading, run, venv_program
 
 PACKAGES = ("debootstrap", "qemu-user-static")
 QEMU = Path("usr", "bin", "qemu-aarch64-static")
-TESTS = ("test_simulation.py", "test_colliders.py")
+TESTS = ("simulation", "colliders", "fields", "shape", "interrupter", "bake_function")
 TEST_SECONDS = 3600
 
 
@@ -57,7 +57,7 @@ def test(wheel: Path) -> None:
         install += ["--platform", "manylinux_2_28_aarch64", "--platform", "manylinux_2_27_aarch64"]
         run([*install, "--requirement", SCRIPTS / "requirements-arm64.txt", wheel])
         words = ["-m", "pytest", "-q", "-p", "no:cacheprovider"]
-        words += [ROOT / "tests" / "native" / name for name in TESTS]
+        words += [ROOT / "tests" / "native" / f"test_{name}.py" for name in TESTS]
         python = [f"/{QEMU}", "/usr/bin/python3", *words]
         variables = {"PYTHONPATH": str(library), "PYTHONDONTWRITEBYTECODE": "1"}
         run(

@@ -8,7 +8,9 @@ folder, in the same working folder and with the variables that tests/blender/con
 from __future__ import annotations
 
 import os
+import shutil
 import sys
+import tempfile
 from pathlib import Path
 
 import debian
@@ -29,12 +31,20 @@ def library() -> Path:
     return debian.folder().with_name("bpy52")
 
 
+def stamp() -> Path:
+    """The requirements that are installed there."""
+    return library() / "requirements.stamp"
+
+
+def is_ready() -> bool:
+    """Whether Blender 5.2 is installed."""
+    return stamp().exists() and stamp().read_bytes() == REQUIREMENTS.read_bytes()
+
+
 def ensure() -> None:
     """Install Blender and its requirements, unless they are there."""
     debian.ensure(*PACKAGES)
-    wanted = REQUIREMENTS.read_text(encoding="utf-8")
-    stamp = library() / "requirements.stamp"
-    if stamp.exists() and stamp.read_text(encoding="utf-8") == wanted:
+    if is_ready():
         return
     with heading("Install Blender 5.2 for the Python of the Debian 13 folder"):
         # Our own pip does it, with its own settings: the folder has none.
@@ -47,7 +57,7 @@ def ensure() -> None:
         # Compiled for the folder's Python: each test starts a Blender anew.
         compiling = ["/usr/bin/python3", "-m", "compileall", "-q", "-j", "0", library()]
         run(debian.inside(compiling, shared=[library()]), timeout=1800)
-        stamp.write_text(wanted, encoding="utf-8")
+        shutil.copy2(REQUIREMENTS, stamp())
 
 
 def test(arguments: list[str]) -> None:
@@ -67,10 +77,11 @@ def main(arguments: list[str]) -> None:
     variables = {name: os.environ[name] for name in PASSED_ON if name in os.environ}
     paths = [Path(path) for path in os.environ.get("PYTHONPATH", "").split(os.pathsep) if path]
     named = [Path(value) for value in variables.values() if os.path.isabs(value)]
-    shared = [path for path in (ROOT, library(), Path.cwd(), *paths, *named) if path.exists()]
+    folders = (Path(tempfile.gettempdir()), ROOT, library(), Path.cwd(), *paths, *named)
+    shared = [path for path in folders if path.exists()]
     variables["PYTHONPATH"] = os.pathsep.join(map(str, [*paths, library()]))
     words = ["env", "-C", Path.cwd(), "/usr/bin/python3", *arguments]
-    command = debian.inside(words, shared=shared, **variables)
+    command = debian.inside(words, shared=shared, hears_signals=True, **variables)
     os.execvp(command[0], command)
 
 

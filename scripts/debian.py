@@ -106,6 +106,7 @@ def inside(
     *,
     shared: Sequence[Path] = (),
     root: Path | None = None,
+    hears_signals: bool = False,
     **variables: str,
 ) -> list[str]:
     """The command that runs `words` in the folder.
@@ -114,6 +115,7 @@ def inside(
         words: Program and arguments, as the folder knows them.
         shared: Files and folders of this system that stand there too, under the same paths.
         root: Another folder of the same kind.
+        hears_signals: Whether the program gets the signals of the command, instead of ending with it, children and all.
         variables: The environment, besides the usual; ours does not go in.
     """
     root = root or folder()
@@ -123,7 +125,8 @@ def inside(
         "LANG": "C.UTF-8",
         **variables,
     }
-    enter = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "sh", "-c", ENTER, "enter"]
+    processes = [] if hears_signals else ["--pid", "--fork", "--kill-child"]
+    enter = ["unshare", "--mount", *processes, "sh", "-c", ENTER, "enter"]
     hosts = [name for name in NAMES_OF_HOSTS if Path(name).exists()]
     paths = [*(str(path.resolve()) for path in shared), *hosts]
     environment = [f"{name}={value}" for name, value in settings.items()]

@@ -14,6 +14,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+import blender52
 import platforms
 from environment import (
     OTHER_BLENDERS,
@@ -94,6 +95,9 @@ def try_everywhere(file: Path) -> None:
         if venv_program(venv, "python").exists():
             with heading(f"Install {file.name} in the Blender of {venv.name}"):
                 try_install(file, venv)
+    if blender52.is_ready():
+        with heading(f"Install {file.name} in Blender 5.2"):
+            try_in(SCRIPTS / "blender52.py", file)
 
 
 def stage(wheels: dict[str, Path], staging: Path) -> None:
@@ -146,15 +150,15 @@ def build_zips(staging: Path, folder: Path, names: list[str]) -> dict[str, Path]
 def try_install(file: Path, venv: Path) -> None:
     """Install the zip into a fresh Blender that has no other copy of the module, and simulate with it."""
     packages = venv_program(venv, "python").parent.parent.glob("lib/python3.*/site-packages/*")
-    with tempfile.TemporaryDirectory(prefix="boucle-install-") as folder:
-        library = Path(folder, "library")
-        library.mkdir()
+    with tempfile.TemporaryDirectory(prefix="boucle-library-") as library:
         for entry in packages:
             if not entry.name.startswith("boucle_core"):
-                (library / entry.name).symlink_to(entry)
-        run(
-            [venv_program(venv, "python"), "-S", SCRIPTS / "try_extension.py", file],
-            timeout=300,
-            PYTHONPATH=str(library),
-            BLENDER_USER_RESOURCES=str(Path(folder, "blender")),
-        )
+                Path(library, entry.name).symlink_to(entry)
+        try_in(venv_program(venv, "python"), file, PYTHONPATH=library)
+
+
+def try_in(python: Path, file: Path, **variables: str) -> None:
+    """Run try_extension.py in a Python without packages of its own, with a user folder of its own."""
+    with tempfile.TemporaryDirectory(prefix="boucle-install-") as user:
+        words = [python, "-S", SCRIPTS / "try_extension.py", file]
+        run(words, timeout=300, BLENDER_USER_RESOURCES=user, **variables)

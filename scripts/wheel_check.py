@@ -27,6 +27,8 @@ WINDOWS_LIBRARIES = (
 )  # fmt: skip
 """What Windows has, and the one Python library that is the same in every version."""
 ALLOWED = {"linux": LINUX_LIBRARIES, "macos": MACOS_LIBRARIES, "windows": WINDOWS_LIBRARIES}
+# Tables that zig leaves empty are no complaint.
+lief.logging.disable()
 ENTRY = "PyInit_boucle_core"
 
 
@@ -41,6 +43,8 @@ class Library:
     oldest: tuple[int, ...]
     """The version of the C library (Linux) or of macOS that it asks for."""
     exports: frozenset[str]
+    is_signed: bool = True
+    """False where a signature, if only the linker's own, is missing; only macOS has them."""
 
 
 def read(data: bytes) -> Library:
@@ -76,6 +80,7 @@ def read(data: bytes) -> Library:
             tuple(library.name for library in binary.libraries if is_linked(library)),
             tuple(version[:2]),
             frozenset(symbol.name.removeprefix("_") for symbol in binary.exported_symbols),
+            binary.has_code_signature,
         )
     raise ValueError("neither an ELF nor a PE nor a Mach-O library")
 
@@ -112,6 +117,8 @@ def complaints(library: Library, platform: str) -> list[str]:
     if limit is not None and library.oldest > limit:
         name = {"linux": "the C library", "macos": "macOS"}[system]
         wrong.append(f"asks for {name} {dotted(library.oldest)}, {dotted(limit)} is allowed")
+    if platform == "macos-arm64" and not library.is_signed:
+        wrong.append("is not signed: a Mac with Apple's processor refuses it")
     if ENTRY not in library.exports:
         wrong.append(f"has no {ENTRY}")
     return wrong

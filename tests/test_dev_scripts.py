@@ -1,5 +1,6 @@
 """dev.py and what stands beside it: what is missing is said in one line, counts add up, yardsticks agree."""
 
+import dataclasses
 import os
 import shutil
 import struct
@@ -135,6 +136,8 @@ def test_a_macos_library_is_read():
     read = wheel_check.read(macos_library((12, 3), "/opt/libpython3.11.dylib"))
     assert (read.platform, read.oldest) == ("macos-arm64", (12, 3))
     assert read.needs == ("/opt/libpython3.11.dylib",)
+    unsigned = dataclasses.replace(library("macos-arm64"), is_signed=read.is_signed)
+    assert "is not signed" in wheel_check.complaints(unsigned, "macos-arm64")[0]
 
 
 def test_what_is_no_library_is_refused():
@@ -236,6 +239,11 @@ def test_a_command_in_the_folder_gets_only_the_environment_that_it_is_given(tmp_
     assert "LETTER=a b" in tail
     assert tail[-3:] == ["chroot", "/folder", "true"]
     assert str(tmp_path) in words[: words.index("--")]
+
+
+def test_a_command_in_the_folder_takes_its_children_along_unless_it_hears_signals_itself():
+    assert "--kill-child" in debian.inside(["true"], root=Path("/folder"))
+    assert "--fork" not in debian.inside(["true"], root=Path("/folder"), hears_signals=True)
 
 
 def test_every_request_of_the_window_has_a_program():

@@ -66,7 +66,7 @@ def _draw() -> None:
         return
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
     gpu.state.blend_set("ALPHA")
-    gpu.state.depth_test_set("LESS_EQUAL")
+    gpu.state.depth_test_set("NONE")  # the rest shape, which is shown too, must not hide it
     for uid, path in _paths.items():
         obj = registry.by_uid(uid)
         if obj is None or not obj.visible_get():
@@ -80,7 +80,6 @@ def _draw() -> None:
                 gpu.matrix.multiply_matrix(obj.matrix_world)
                 shader.uniform_float("color", _COLOR)
                 known[1].draw(shader)
-    gpu.state.depth_test_set("NONE")
     gpu.state.blend_set("NONE")
 
 

@@ -21,9 +21,9 @@ from .polling import can_simulate, cloths_of, is_free
 
 _TICK = 0.02
 """Seconds between two looks at the worker."""
-_PATIENCE, _MOST_PATIENCE = 0.03, 0.5
+_PATIENCE, _MOST_PATIENCE = 0.03, 0.2
 """Seconds that one look may take, in which the window cannot answer: short frames are baked several at a look. Where drawing
-takes longer, a look may take as long as drawing, up to the second number: else slow drawing would slow the bake."""
+takes longer, a look may take half as long as drawing, up to the second number: else slow drawing would slow the bake."""
 
 
 class _Baking:
@@ -123,7 +123,7 @@ class _Baking:
     def _pull(self, context: Context) -> bool:
         """Do what can be done in a moment; False at the end of the last bake."""
         began = time.monotonic()
-        until = began + min(max(began - self._looked, _PATIENCE), _MOST_PATIENCE)
+        until = began + min(max(0.5 * (began - self._looked), _PATIENCE), _MOST_PATIENCE)
         try:
             while True:
                 if not self._worker.is_done(max(0.0, until - time.monotonic())):

@@ -101,6 +101,10 @@ impl Air {
         self.fields.set(fields);
     }
 
+    pub(crate) fn fields(&self) -> &[Field] {
+        self.fields.each()
+    }
+
     /// Begins the frame after this one.
     pub(crate) fn start_frame(&mut self, frame: i32) {
         self.fields.start_frame(frame);

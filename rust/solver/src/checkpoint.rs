@@ -5,8 +5,10 @@
 //! | positions and velocities, f64, axis by axis
 //! | pins u64 | weight, target, goal of each, f64 | cloths u64 | stiffness of their pins, f64
 //! | grabbed u64 | particle, stiffness, damping, goal, target of each, f64
+//! | gravity, f64 | winds u64 | velocity of each, f64 | force fields u64 | numbers of each, f64
 //! | points of colliders u64 | their positions, f64, point by point
-//! | numbers of the shape u64 | those, f64: present rest lengths, pressures, welded seams
+//! | the same where they are to be next; no points if they stay
+//! | numbers of the shape u64 | those, f64: rest lengths, pressures, welded seams
 //! | implicit integrators only: edges u64 | substeps u32 | step f64 | error f64
 //! |     positions and velocities before | tension f64 of each edge
 //! | XXH3-64 of all before
@@ -18,6 +20,7 @@ use boucle_geometry::Vector;
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::error::{Error, Result};
+use crate::force::{FIELD_NUMBERS, Field};
 use crate::goals::Goal;
 use crate::grab::Grab;
 use crate::implicit::Memory;
@@ -25,7 +28,7 @@ use crate::pins::Held;
 use crate::state::State;
 
 const MAGIC: &[u8; 8] = b"BOUCLECK";
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 const HEADER: usize = 36;
 
 /// What a checkpoint holds.
@@ -40,9 +43,14 @@ pub(crate) struct Checkpoint {
     /// Stiffness (N/m) of each cloth's pins.
     pub(crate) pin_stiffness: Vec<f64>,
     pub(crate) grab: Grab,
-    /// Where the points of colliders are (m).
-    pub(crate) colliders: Vec<Vector>,
-    /// Present rest lengths, pressures and welded seams, where there are any.
+    /// (m/s²)
+    pub(crate) gravity: Vector,
+    /// Velocities (m/s).
+    pub(crate) winds: Vec<Vector>,
+    pub(crate) fields: Vec<Field>,
+    /// Where the points of colliders are (m), and where they are to be at the end of the next frame.
+    pub(crate) colliders: [Vec<Vector>; 2],
+    /// Rest lengths, pressures and welded seams.
     pub(crate) shape: Vec<f64>,
     pub(crate) memory: Option<Memory>,
 }
@@ -59,11 +67,7 @@ impl Checkpoint {
         bytes.extend_from_slice(&(count as u64).to_le_bytes());
         write_state(&mut bytes, &self.state);
         self.write_holds(&mut bytes);
-        bytes.extend_from_slice(&(self.colliders.len() as u64).to_le_bytes());
-        let numbers = self.colliders.iter().flatten();
-        bytes.extend(numbers.flat_map(|number| number.to_le_bytes()));
-        bytes.extend_from_slice(&(self.shape.len() as u64).to_le_bytes());
-        bytes.extend(self.shape.iter().flat_map(|number| number.to_le_bytes()));
+        self.write_surroundings(&mut bytes);
         if let Some(memory) = &self.memory {
             bytes.extend_from_slice(&(memory.tensions.len() as u64).to_le_bytes());
             bytes.extend_from_slice(&memory.substeps.to_le_bytes());
@@ -77,11 +81,23 @@ impl Checkpoint {
         bytes
     }
 
+    fn write_surroundings(&self, bytes: &mut Vec<u8>) {
+        bytes.extend(self.gravity.iter().flat_map(|number| number.to_le_bytes()));
+        let mut write =
+            |count, numbers: &mut dyn Iterator<Item = f64>| write(bytes, count, numbers);
+        write(self.winds.len(), &mut self.winds.iter().flatten().copied());
+        write(self.fields.len(), &mut self.fields.iter().flat_map(Field::to_numbers));
+        let [from, to] = &self.colliders;
+        let to = if from == to { &[][..] } else { to };
+        for points in [from, to] {
+            write(points.len(), &mut points.iter().flatten().copied());
+        }
+        write(self.shape.len(), &mut self.shape.iter().copied());
+    }
+
     fn write_holds(&self, bytes: &mut Vec<u8>) {
-        let mut write = |count: usize, numbers: &mut dyn Iterator<Item = f64>| {
-            bytes.extend_from_slice(&(count as u64).to_le_bytes());
-            bytes.extend(numbers.flat_map(f64::to_le_bytes));
-        };
+        let mut write =
+            |count, numbers: &mut dyn Iterator<Item = f64>| write(bytes, count, numbers);
         let pin = |pin: &Held| {
             let ([x, y, z], [gx, gy, gz]) = (pin.target.into(), pin.goal.into());
             [pin.weight, x, y, z, gx, gy, gz]
@@ -107,7 +123,7 @@ impl Checkpoint {
             return Err(damaged());
         }
         if reader.take().map(u32::from_le_bytes) != Some(VERSION) {
-            return Err(Error::BadCheckpoint("is of another version; accepted: version 4"));
+            return Err(Error::BadCheckpoint("is of another version; accepted: version 5"));
         }
         Self::read_body(&mut reader).ok_or_else(damaged)
     }
@@ -134,7 +150,12 @@ impl Checkpoint {
             Goal { particle: particle as u32, stiffness, damping, from, to }
         });
         let grab = Grab { goals: goals.collect() };
-        let colliders = reader.vectors()?;
+        let gravity = Vector::from(reader.three()?);
+        let winds = reader.vectors()?;
+        let fields = reader.rows::<FIELD_NUMBERS>()?;
+        let fields = fields.iter().map(Field::from_numbers).collect::<Option<_>>()?;
+        let [from, to] = [reader.vectors()?, reader.vectors()?];
+        let to = if to.is_empty() { from.clone() } else { to };
         let shape = reader.numbers()?;
         let memory =
             if reader.0.is_empty() { None } else { Some(Self::read_memory(reader, count)?) };
@@ -146,7 +167,10 @@ impl Checkpoint {
             pins,
             pin_stiffness,
             grab,
-            colliders,
+            gravity,
+            winds,
+            fields,
+            colliders: [from, to],
             shape,
             memory,
         })
@@ -166,6 +190,12 @@ impl Checkpoint {
     }
 }
 
+/// A count, and numbers.
+fn write(bytes: &mut Vec<u8>, count: usize, numbers: &mut dyn Iterator<Item = f64>) {
+    bytes.extend_from_slice(&(count as u64).to_le_bytes());
+    bytes.extend(numbers.flat_map(f64::to_le_bytes));
+}
+
 fn write_state(bytes: &mut Vec<u8>, state: &State) {
     for axis in state.position.0.iter().chain(&state.velocity.0) {
         bytes.extend(axis.iter().flat_map(|value| value.to_le_bytes()));
@@ -183,6 +213,10 @@ impl Reader<'_> {
 
     fn number(&mut self) -> Option<f64> {
         self.take().map(f64::from_le_bytes)
+    }
+
+    fn three(&mut self) -> Option<[f64; 3]> {
+        Some([self.number()?, self.number()?, self.number()?])
     }
 
     fn count(&mut self) -> Option<usize> {
@@ -224,6 +258,7 @@ impl Reader<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::force::FieldKind;
 
     fn checkpoint() -> Checkpoint {
         let state = State::at_rest(&[Vector::new(1.0, -0.0, 3.5), Vector::new(0.1, 1e-300, 7.0)]);
@@ -233,7 +268,9 @@ mod tests {
         let (pins, pin_stiffness) = (vec![Held { weight: 0.25, target, goal }], vec![30.0]);
         let held = Goal { particle: 1, stiffness: 3.0, damping: 0.5, from: goal, to: target };
         let grab = Grab { goals: vec![held] };
-        let (colliders, memory) = (vec![Vector::new(1.5, -2.0, 1e-9)], Some(memory));
+        let points = [0.0, 0.5].map(|z| vec![Vector::new(1.5, -2.0, z)]);
+        let (colliders, memory) = (points, Some(memory));
+        let fields = vec![Field::new(FieldKind::Drag, 0.5)];
         let shape = vec![1.0, 0.25];
         Checkpoint {
             digest: 7,
@@ -243,6 +280,9 @@ mod tests {
             pins,
             pin_stiffness,
             grab,
+            gravity: Vector::new(0.5, 0.0, -9.81),
+            winds: vec![Vector::new(0.0, 3.0, -1.0)],
+            fields,
             colliders,
             shape,
             memory,

@@ -26,6 +26,7 @@ mod grab;
 mod grouped;
 mod implicit;
 mod integrator;
+mod interrupter;
 mod kernel;
 mod law;
 mod limit;
@@ -56,9 +57,10 @@ pub use force::{
     Falloff, FalloffShape, Field, FieldKind, FieldShape, Pressure, Range, Region, Side, Wind,
     WindLaw,
 };
+pub use interrupter::Interrupter;
 pub use law::{Spring, springs_of_mesh};
 pub use material::{DampingLaw, Limiter, PinMaterial, SpringKind, SpringMaterial, StiffnessFrom};
 pub use overstretch::OverstretchedEdge;
 pub use settings::{IntegratorKind, LinearSolver, MOST_SUBSTEPS, Settings, StepSize};
-pub use simulation::{Interrupter, Simulation};
+pub use simulation::Simulation;
 pub use tailoring::{SHRINK, Sewing, Tailoring};

@@ -4,6 +4,7 @@ use crate::cloth::Cloth;
 use crate::contact::{Contacts, Response};
 use crate::implicit::{Implicit, Memory, Rule};
 use crate::integrator::{Integrator, Scratch, explicit};
+use crate::interrupter::Interrupter;
 use crate::settings::{IntegratorKind, Settings};
 use crate::state::State;
 use crate::system::System;
@@ -20,16 +21,18 @@ impl Method {
         cloths: &[Cloth],
         system: &System,
         state: &State,
+        interrupter: &Interrupter,
     ) -> Self {
         if let Some(rule) = explicit(settings.integrator) {
-            let response = Box::new(Response::new(state.len()));
+            let response = Box::new(Response::new(state.len(), interrupter));
             return Self::Explicit(rule, Box::new(Scratch::new(state)), response);
         }
         let rule = match settings.integrator {
             IntegratorKind::Bdf2 => Rule::Bdf2,
             _ => Rule::ImplicitEuler,
         };
-        let implicit = Implicit::new(rule, settings.linear_solver, cloths, system, state);
+        let implicit =
+            Implicit::new(rule, settings.linear_solver, cloths, system, state, interrupter);
         Self::Implicit(Box::new(implicit))
     }
 

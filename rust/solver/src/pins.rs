@@ -154,6 +154,14 @@ impl Pins {
         changes.fold(0.0, f64::max)
     }
 
+    /// The longest way (m) that a hard pin is to go.
+    pub(crate) fn longest_way(&self, state: &State) -> f64 {
+        let ways = self.hard().map(|pin| {
+            (pin.held.target - state.position.get(pin.particle as usize)).norm_squared()
+        });
+        ways.fold(0.0, f64::max).sqrt()
+    }
+
     /// Puts the hard pins on their targets.
     pub(crate) fn arrive(&self, state: &mut State) {
         for pin in self.hard() {
@@ -173,17 +181,17 @@ impl Pins {
         (self.all.iter().map(|pin| pin.held).collect(), self.stiffness.clone())
     }
 
-    /// Takes up what [`Self::held`] gave; false if it is of other pins.
-    #[must_use]
-    pub(crate) fn restore(&mut self, held: &[Held], stiffness: &[f64]) -> bool {
-        if held.len() != self.all.len() || stiffness.len() != self.stiffness.len() {
-            return false;
-        }
+    /// Whether what [`Self::held`] gave is of these pins.
+    pub(crate) fn fit(&self, held: &[Held], stiffness: &[f64]) -> bool {
+        held.len() == self.all.len() && stiffness.len() == self.stiffness.len()
+    }
+
+    /// Takes it up.
+    pub(crate) fn restore(&mut self, held: &[Held], stiffness: &[f64]) {
         for (pin, held) in self.all.iter_mut().zip(held) {
             pin.held = *held;
         }
         self.stiffness.copy_from_slice(stiffness);
-        true
     }
 }
 

@@ -64,24 +64,15 @@ impl Rest {
         }
     }
 
-    /// The rest lengths that are aimed at.
-    pub(crate) fn target(&self) -> &[f64] {
-        &self.to
+    /// The rest lengths as the frame begins and as it ends.
+    pub(crate) fn both(&self) -> [&[f64]; 2] {
+        [&self.from, &self.to]
     }
 
-    /// Goes back to the rest lengths of the cloth as it was given.
-    pub(crate) fn aim_at_given(&mut self) {
-        self.to.copy_from_slice(&self.given);
-    }
-
-    /// Takes these rest lengths at once; false if they are not those of its springs.
-    pub(crate) fn jump(&mut self, lengths: &[f64]) -> bool {
-        let fits = lengths.len() == self.to.len() && lengths.iter().all(|&length| length >= CLOSED);
-        if fits {
-            self.to.copy_from_slice(lengths);
-            self.arrive();
-        }
-        fits
+    /// Takes up what [`Self::both`] gave; empty: where the frame ends as the cloth was given, where it begins as it ends.
+    pub(crate) fn restore(&mut self, from: &[f64], to: &[f64]) {
+        self.to.copy_from_slice(if to.is_empty() { &self.given } else { to });
+        self.from.copy_from_slice(if from.is_empty() { &self.to } else { from });
     }
 
     /// Whether they change over the frame.
@@ -113,15 +104,14 @@ impl Rest {
         }
     }
 
-    /// For each vertex, how far its edges are to shrink: the least ratio of rest length to that given, at most 1.
+    /// For each vertex, how far its edges have shrunk: the least ratio of rest length to that given, at most 1.
     pub(crate) fn scales(&self, cloth: &Cloth) -> Vec<f64> {
         let mut scales = vec![1.0_f64; cloth.positions.len()];
-        let lengths = self.to.iter().zip(&self.given);
-        for (spring, (to, given)) in cloth.springs.iter().zip(lengths) {
+        for (spring, given) in cloth.springs.iter().zip(&self.given) {
             if spring.kind == SpringKind::Stretch {
                 for end in spring.ends {
                     let scale = &mut scales[end as usize];
-                    *scale = scale.min(to / given);
+                    *scale = scale.min(spring.rest_length / given);
                 }
             }
         }

@@ -7,11 +7,10 @@ mod holding;
 mod interrupt;
 mod placing;
 mod plan;
+mod saved_shape;
 mod saving;
 mod shape;
 mod tension;
-
-pub use interrupt::Interrupter;
 
 use std::fmt;
 use std::ops::Range;
@@ -30,6 +29,7 @@ use crate::error::{Error, Result};
 use crate::force::Wind;
 use crate::grab::Grab;
 use crate::implicit::{Accuracy, Memory};
+use crate::interrupter::Interrupter;
 use crate::kernel::CHUNK;
 use crate::law::spring::Law;
 use crate::limit::Limit;
@@ -139,13 +139,14 @@ impl Simulation {
             .build()
             .map_err(|_| Error::Threads(settings.threads))?;
         let system = System::new(&cloths, winds, settings.gravity);
+        let interrupter = Interrupter::default();
         let mut simulation = Self {
             pins: Pins::new(&cloths, &state),
             grab: Grab::default(),
-            method: Method::new(&settings, &cloths, &system, &state),
+            method: Method::new(&settings, &cloths, &system, &state, &interrupter),
             system,
             spectrum: Spectrum::default(),
-            contacts: Contacts::new(&cloths, &colliders),
+            contacts: Contacts::new(&cloths, &colliders, &interrupter),
             limits: Vec::new(),
             rests: cloths.iter().map(|_| None).collect(),
             seams: Seams::new(&cloths),
@@ -168,7 +169,7 @@ impl Simulation {
             digest,
             state,
             threads: Arc::new(threads),
-            interrupter: Interrupter::default(),
+            interrupter,
         };
         simulation.follow_holds();
         simulation.follow_pins();
@@ -277,8 +278,7 @@ impl Simulation {
         }
         self.pins.start(&mut self.state, duration);
         self.system.air.start_steps(h, self.method.is_implicit());
-        let way = self.contacts.longest_way(&self.state.velocity, duration);
-        let stride = plan::stride(&self.method, way, substeps);
+        let stride = plan::stride(&self.method, self.longest_way(), substeps);
         // No pass has work for more.
         let others = self.state.len() / CHUNK;
         let threads = Arc::clone(&self.threads);
@@ -290,9 +290,15 @@ impl Simulation {
                     }
                     self.shape(f64::from(substep) / f64::from(substeps), false);
                     self.system.goals.start_step(substep, substeps);
-                    let Self { system, pins, contacts, limits, state, method, .. } = &mut *self;
-                    let step = Step { system, pins, h, number: substep, count: substeps, stride };
+                    let Self { system, pins, contacts, limits, state, method, interrupter, .. } =
+                        &mut *self;
+                    let (number, count, interrupter) = (substep, substeps, &*interrupter);
+                    let step = Step { system, pins, h, number, count, stride, interrupter };
                     let is_short = step.run(state, method, contacts, limits);
+                    // What stopped half way must not be taken for a step.
+                    if interrupter.take() {
+                        return Some(Outcome::Interrupted);
+                    }
                     let is_seen = watches || substep == substeps;
                     let lost = if is_seen { state.first_lost() } else { None };
                     let too_long = (may_shorten && !is_short).then_some(Outcome::TooLong);

@@ -2,6 +2,7 @@
 
 use crate::contact::{Contacts, Walls};
 use crate::implicit::Implicit;
+use crate::interrupter::Interrupter;
 use crate::limit::Limit;
 use crate::method::Method;
 use crate::pins::Pins;
@@ -35,6 +36,8 @@ pub(crate) struct Step<'a> {
     pub(crate) count: u32,
     /// So many steps meet contacts together: one, or several explicit ones.
     pub(crate) stride: u32,
+    /// A step that is asked to stop stops half way.
+    pub(crate) interrupter: &'a Interrupter,
 }
 
 impl Step<'_> {
@@ -76,7 +79,7 @@ impl Step<'_> {
             return is_short;
         }
         for _ in 0..if is_last { TURNS } else { 0 } {
-            if clipped == 0 && is_held {
+            if clipped == 0 && is_held || self.interrupter.is_asked() {
                 break;
             }
             is_held = self.hold_again(state, limits, contacts.walls());
@@ -96,7 +99,8 @@ impl Step<'_> {
         match method {
             Method::Explicit(..) => {
                 for limit in limits {
-                    limit.apply(state, &self.system.inverse_masses, self.h, is_last);
+                    let masses = &self.system.inverse_masses;
+                    limit.apply(state, masses, self.h, is_last, self.interrupter);
                 }
                 true
             }
@@ -114,7 +118,7 @@ impl Step<'_> {
     ) -> bool {
         let mut is_held = self.hold(state, limits, SWEEPS_AT_END);
         for _ in 0..PULLS {
-            if is_held || !implicit.pull(self.system, state) {
+            if is_held || self.interrupter.is_asked() || !implicit.pull(self.system, state) {
                 break;
             }
             is_held = self.hold_again(state, limits, &Walls::default());
@@ -141,8 +145,9 @@ impl Step<'_> {
         walls: &Walls,
     ) -> bool {
         let inverse_masses = &self.system.inverse_masses;
-        let is_held =
-            limits.map(|limit| limit.hold(state, inverse_masses, self.h, most_sweeps, walls));
+        let is_held = limits.map(|limit| {
+            limit.hold(state, inverse_masses, self.h, most_sweeps, walls, self.interrupter)
+        });
         is_held.fold(true, |all, held| all & held)
     }
 }

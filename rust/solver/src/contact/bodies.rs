@@ -60,7 +60,7 @@ pub(super) struct Bodies {
     pub(super) planes: Vec<Plane>,
     /// Particles at rest (m), and colliders' points at the first frame.
     pub(super) rest: Vec<Vector>,
-    /// By which factor edges at each point are to be shorter than at rest; empty while none are.
+    /// By which factor edges at each point are shorter than at rest; empty while none are.
     pub(super) scales: Vec<f64>,
     /// Vertices that count as one.
     sewn: Sewn,

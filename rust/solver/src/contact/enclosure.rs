@@ -232,6 +232,7 @@ mod tests {
     use crate::cloth::{Cloth, Mass};
     use crate::collider::{Collider, Shape};
     use crate::collision::Collision;
+    use crate::interrupter::Interrupter;
     use crate::material::SpringMaterial;
     use crate::state::State;
 
@@ -258,7 +259,7 @@ mod tests {
         let name = "body".to_owned();
         let body = Collider { name, shape, positions, thickness: 0.0, friction: 0.3 };
         let state = State::at_rest(&cloth.positions);
-        let mut contacts = Contacts::new(&[cloth], &[body]);
+        let mut contacts = Contacts::new(&[cloth], &[body], &Interrupter::default());
         assert!(contacts.intersections(&state.position) > 0);
         let crossings = contacts.crossings();
         contacts.regions(&crossings)

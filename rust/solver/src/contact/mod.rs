@@ -39,6 +39,7 @@ use boucle_geometry::{Vector, Way};
 
 use crate::cloth::Cloth;
 use crate::collider::Collider;
+use crate::interrupter::Interrupter;
 use crate::state::Coordinates;
 use bodies::Bodies;
 use candidate::Candidate;
@@ -84,10 +85,11 @@ pub(crate) struct Contacts {
     remembered: Remembered,
     /// Vertices that were cut short since they were last counted.
     clipped: u32,
+    interrupter: Interrupter,
 }
 
 impl Contacts {
-    pub(crate) fn new(cloths: &[Cloth], colliders: &[Collider]) -> Self {
+    pub(crate) fn new(cloths: &[Cloth], colliders: &[Collider], interrupter: &Interrupter) -> Self {
         let bodies = Bodies::new(cloths, colliders);
         let of_colliders = &bodies.rest[bodies.particle_count..];
         Self {
@@ -107,6 +109,7 @@ impl Contacts {
             pressures: Vec::new(),
             remembered: Remembered::default(),
             clipped: 0,
+            interrupter: interrupter.clone(),
             bodies,
         }
     }
@@ -116,7 +119,7 @@ impl Contacts {
         self.paths.follow_pins(inverse_masses);
     }
 
-    /// Takes over how far the edges at each vertex of a cloth are to shrink, whose first particle is `base`: what lies near each
+    /// Takes over how far the edges at each vertex of a cloth have shrunk, whose first particle is `base`: what lies near each
     /// other at rest may then lie nearer.
     pub(crate) fn scale_rest(&mut self, base: u32, scales: &[f64]) {
         let Bodies { scales: all, rest, .. } = &mut self.bodies;
@@ -175,14 +178,14 @@ impl Contacts {
         points.filter(|&point| self.bodies.is_particle(point))
     }
 
-    /// Where the points of all colliders are (m).
-    pub(crate) fn collider_positions(&self) -> &[Vector] {
-        &self.frame[0]
+    /// Where the points of all colliders are (m), and where they are to be at the end of the next frame.
+    pub(crate) fn collider_positions(&self) -> &[Vec<Vector>; 2] {
+        &self.frame
     }
 
-    /// Puts the points of all colliders there (m), at rest.
-    pub(crate) fn place_colliders(&mut self, positions: &[Vector]) {
-        self.frame = [positions.to_vec(), positions.to_vec()];
+    /// Puts the points of all colliders there (m).
+    pub(crate) fn place_colliders(&mut self, positions: [Vec<Vector>; 2]) {
+        self.frame = positions;
     }
 
     /// Sends points of colliders, from one of them on, to targets (m) that they reach at the end of the next frame.
@@ -190,16 +193,17 @@ impl Contacts {
         self.frame[1][first..first + targets.len()].copy_from_slice(targets);
     }
 
-    /// The longest way (m) that a collider and a particle with one of these velocities (m/s) go towards each other over
-    /// the next frame of a duration (s); 0 without colliders.
-    pub(crate) fn longest_way(&self, velocities: &Coordinates, duration: f64) -> f64 {
+    /// The longest way (m) that a collider and a particle with one of these velocities (m/s), or a pin that is told to go so far
+    /// (m), go towards each other over the next frame of a duration (s); 0 without colliders.
+    pub(crate) fn longest_way(&self, velocities: &Coordinates, pin_way: f64, duration: f64) -> f64 {
         let ways = self.frame[0].iter().zip(&self.frame[1]).map(|(from, to)| (to - from).norm());
         if self.is_empty() || self.frame[0].is_empty() {
             return 0.0;
         }
         let speeds =
             (0..self.bodies.particle_count).map(|particle| velocities.get(particle).norm_squared());
-        ways.fold(0.0, f64::max) + duration * speeds.fold(0.0, f64::max).sqrt()
+        let of_particles = duration * speeds.fold(0.0, f64::max).sqrt();
+        ways.fold(0.0, f64::max) + of_particles.max(pin_way)
     }
 
     /// Ends a frame: its end is the start of the next.

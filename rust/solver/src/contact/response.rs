@@ -10,6 +10,7 @@
 //! is done once for several of them.
 
 use super::{ContactMatrix, Contacts};
+use crate::interrupter::Interrupter;
 use crate::linear::{BlockJacobi, ConjugateGradient, Field, Inverse, Operator, Stop};
 use crate::state::State;
 use crate::system::System;
@@ -33,11 +34,11 @@ pub(crate) struct Response {
 }
 
 impl Response {
-    pub(crate) fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize, interrupter: &Interrupter) -> Self {
         Self {
             inertia: vec![0.0; count],
             blocks: BlockJacobi::new(count),
-            gradients: ConjugateGradient::new(count),
+            gradients: ConjugateGradient::new(count, interrupter),
             step: Field::zeros(count),
             wanted: State::zeros(count),
         }

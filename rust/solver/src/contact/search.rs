@@ -9,6 +9,7 @@ use super::easing::Easing;
 use super::features::{Edge, Features, Triangle};
 use super::sieve::Sieve;
 use super::{Contacts, Trees};
+use crate::interrupter::Interrupter;
 
 /// Points that one task fits, at the least.
 const POINTS: usize = 1024;
@@ -45,12 +46,13 @@ impl Contacts {
         self.searching(Some(is_changed), None, visit).everything()
     }
 
-    /// The same for candidates of a cloth and a collider.
+    /// The same for candidates of a cloth and a collider. It is not stopped half way: what it finds is counted.
     pub(super) fn search_colliders<T: Default + Send>(
         &self,
         visit: impl Fn(Candidate, &mut T) + Sync,
     ) -> Vec<T> {
-        self.searching(None, None, visit).cloths_and_colliders()
+        let search = self.searching(None, None, visit);
+        Search { interrupter: None, ..search }.cloths_and_colliders()
     }
 
     fn searching<'a, T>(
@@ -59,13 +61,22 @@ impl Contacts {
         easing: Option<&'a Easing>,
         visit: impl Fn(Candidate, &mut T) + Sync,
     ) -> Search<'a, impl Fn(Candidate, &mut T) + Sync> {
-        let Self { bodies, cloths, colliders, ways, tangle, .. } = self;
+        let Self { bodies, cloths, colliders, ways, tangle, interrupter, .. } = self;
         let visit = move |candidate: Candidate, found: &mut T| {
             if bodies.candidate_may_touch(&candidate) && !tangle.lets_go(&candidate) {
                 visit(candidate, found);
             }
         };
-        Search { bodies, cloths, colliders, ways, is_changed, easing, visit }
+        Search {
+            bodies,
+            cloths,
+            colliders,
+            ways,
+            is_changed,
+            easing,
+            interrupter: Some(interrupter),
+            visit,
+        }
     }
 }
 
@@ -76,6 +87,8 @@ struct Search<'a, V> {
     ways: &'a [Way],
     is_changed: Option<&'a [bool]>,
     easing: Option<&'a Easing>,
+    /// What stops it half way, if anything may.
+    interrupter: Option<&'a Interrupter>,
     visit: V,
 }
 
@@ -95,6 +108,9 @@ impl<V> Search<'_, V> {
         V: Fn(Candidate, &mut T),
     {
         let Self { bodies, ways, easing, .. } = *self;
+        if self.interrupter.is_some_and(Interrupter::is_asked) {
+            return;
+        }
         Sieve { bodies, ways, easing }.sift(candidates, |each| (self.visit)(each, found));
     }
 

@@ -85,7 +85,7 @@ fn above(cloth: Cloth) -> Cloth {
 
 /// Contacts of cloths among colliders whose particles are all free, and their positions.
 fn contacts(cloths: &[Cloth], colliders: &[Collider]) -> (Contacts, Vec<Vector>, Vec<f64>) {
-    let mut contacts = Contacts::new(cloths, colliders);
+    let mut contacts = Contacts::new(cloths, colliders, &Interrupter::default());
     let positions: Vec<Vector> = cloths.iter().flat_map(|cloth| cloth.positions.clone()).collect();
     let masses = cloths.iter().flat_map(|cloth| &cloth.masses);
     let inverse_masses: Vec<f64> = masses.map(|mass| 1.0 / mass).collect();

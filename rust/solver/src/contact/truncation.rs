@@ -51,6 +51,9 @@ impl Contacts {
         if cutting.is_changed.contains(&true) {
             self.stay_before_planes(&mut cutting);
             for round in 0..ROUNDS {
+                if self.interrupter.is_asked() {
+                    break;
+                }
                 let cuts = self.cuts(&cutting.is_changed);
                 self.take_up(&cuts, round < SLIDING_ROUNDS, &mut cutting);
                 if !cutting.is_changed.contains(&true) {

@@ -106,9 +106,18 @@ impl Air {
         self.winds[wind].0.velocity = velocity;
     }
 
+    /// The velocities (m/s) of the winds.
+    pub(crate) fn wind_velocities(&self) -> impl ExactSizeIterator<Item = Vector> {
+        self.winds.iter().map(|(wind, _)| wind.velocity)
+    }
+
     /// How many winds blow.
     pub(crate) fn wind_count(&self) -> usize {
         self.winds.len()
+    }
+
+    pub(crate) fn fields(&self) -> &[Field] {
+        self.fields.each()
     }
 
     /// Begins the frame after this one.

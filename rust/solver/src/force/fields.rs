@@ -45,6 +45,10 @@ impl Fields {
         self.each = fields;
     }
 
+    pub(super) fn each(&self) -> &[Field] {
+        &self.each
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.each.is_empty()
     }

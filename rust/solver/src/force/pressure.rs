@@ -23,13 +23,11 @@
 use boucle_geometry::Vector;
 use rayon::prelude::*;
 
+use super::filling::{Filling, LEAST_VOLUME, Level, share_out};
 use crate::cloth::{Cloth, placed};
 use crate::error::{Error, Result};
 use crate::kernel::CHUNK;
 use crate::state::State;
-
-/// Volume never counts as less than this part of the one at which pressures balance.
-const LEAST_VOLUME: f64 = 0.01;
 
 /// Largest pressure (N/m²) and volume (m³) that are taken.
 const MOST: f64 = 1e12;
@@ -76,28 +74,6 @@ impl Pressure {
             None => Ok(()),
         }
     }
-}
-
-/// `uniform`, `factor` and V0 of a pressure at one time.
-pub(crate) type Level = [f64; 3];
-
-/// The pressure of one cloth.
-#[derive(Debug)]
-struct Filling {
-    cloth: usize,
-    first: usize,
-    count: usize,
-    /// Its faces among all, and those that count for the volume.
-    faces: std::ops::Range<usize>,
-    counts: Vec<bool>,
-    /// For each of its particles.
-    weights: Vec<f64>,
-    /// Volume (m³) of the rest shape.
-    rest_volume: f64,
-    /// As the frame begins, as it ends, and now.
-    from: Level,
-    to: Level,
-    now: Level,
 }
 
 /// The pressures of all cloths.
@@ -196,7 +172,7 @@ impl Pressures {
         for Filling { from, to, now, .. } in &mut self.fillings {
             // What arrives is exactly there; between a volume that counts and none there is nothing.
             let jumps = (from[2] > 0.0) != (to[2] > 0.0);
-            let is_there = part >= 1.0 || jumps;
+            let is_there = part >= 1.0 || (jumps && part > 0.0);
             let mix = |i: usize| if is_there { to[i] } else { from[i] + part * (to[i] - from[i]) };
             *now = std::array::from_fn(mix);
         }
@@ -209,17 +185,17 @@ impl Pressures {
         }
     }
 
-    /// The values that are aimed at, one level after the other.
-    pub(crate) fn targets(&self) -> impl Iterator<Item = Level> {
-        self.fillings.iter().map(|filling| filling.to)
+    /// The values of each cloth that has any, as the frame begins and as it ends.
+    pub(crate) fn levels(&self) -> impl Iterator<Item = [Level; 2]> {
+        self.fillings.iter().map(|filling| [filling.from, filling.to])
     }
 
-    /// Takes such values at once.
-    pub(crate) fn jump(&mut self, levels: impl Iterator<Item = Level>) {
-        for (filling, level) in self.fillings.iter_mut().zip(levels) {
-            filling.to = level;
+    /// Takes up such values.
+    pub(crate) fn restore(&mut self, levels: &[[Level; 2]]) {
+        for (filling, [from, to]) in self.fillings.iter_mut().zip(levels) {
+            (filling.from, filling.to) = (*from, *to);
         }
-        self.arrive();
+        self.put(0.0);
     }
 
     fn corners_of_face(&self, face: usize) -> impl Iterator<Item = u32> + Clone {
@@ -238,11 +214,21 @@ impl Pressures {
 
     /// Looks at every face in `state`, and finds all forces (N).
     pub(crate) fn observe(&self, state: &State, scratch: &mut PressureScratch) {
+        self.observe_at(state, scratch, Filling::at);
+    }
+
+    /// The same with p (N/m²) and `-dp/dV` (N/m⁵) as told for a volume (m³).
+    fn observe_at(
+        &self,
+        state: &State,
+        scratch: &mut PressureScratch,
+        at: impl Fn(&Filling, f64) -> [f64; 2],
+    ) {
         let PressureScratch { shares, forces, levels } = scratch;
         shares.resize(self.corners.len(), Vector::zeros());
         forces.resize(state.len(), Vector::zeros());
         levels.clear();
-        levels.extend(self.fillings.iter().map(|each| each.at(self.volume_of(each, state))));
+        levels.extend(self.fillings.iter().map(|each| at(each, self.volume_of(each, state))));
         let mut tasks = Vec::new();
         let mut rest = &mut shares[..];
         let face_count = self.face_starts.len() - 1;
@@ -295,13 +281,13 @@ impl Pressures {
         })
     }
 
-    /// The largest w² (1/s²) that pressures add to a state's oscillators.
+    /// The largest w² (1/s²) that pressures add to a state's oscillators at any time of the frame.
     pub(crate) fn stiffness(&self, state: &State, inverse_masses: &[f64]) -> f64 {
         if self.is_empty() {
             return 0.0;
         }
         let mut scratch = PressureScratch::default();
-        self.observe(state, &mut scratch);
+        self.observe_at(state, &mut scratch, Filling::most_at);
         let as_one = self.stiff(&scratch).map(|(particles, slope, area)| {
             let each =
                 particles.map(|particle| inverse_masses[particle] * area(particle).norm_squared());
@@ -342,59 +328,5 @@ impl Pressures {
     pub(crate) fn volume(&self, cloth: usize, state: &State) -> Option<f64> {
         let filling = self.fillings.iter().find(|filling| filling.cloth == cloth)?;
         Some(self.volume_of(filling, state))
-    }
-}
-
-impl Filling {
-    fn level(&self, uniform: f64, factor: f64, target: Option<f64>) -> Level {
-        [uniform, factor, target.unwrap_or(self.rest_volume)]
-    }
-
-    /// p (N/m²) and `-dp/dV` (N/m⁵) at a volume (m³).
-    fn at(&self, volume: f64) -> [f64; 2] {
-        let [uniform, factor, balance] = self.now;
-        if balance <= 0.0 || factor == 0.0 {
-            return [uniform, 0.0];
-        }
-        let volume = volume.max(LEAST_VOLUME * balance);
-        [uniform + factor * (balance / volume - 1.0), factor * balance / (volume * volume)]
-    }
-
-    /// The volume (m³) within the faces that count.
-    fn volume<'a, F: Iterator<Item = u32> + Clone>(
-        &self,
-        corners_of_face: impl Fn(usize) -> F,
-        at: impl Fn(u32) -> Vector,
-        all: impl ExactSizeIterator<Item = &'a Vector>,
-    ) -> f64 {
-        let count = all.len() as f64;
-        let middle = all.sum::<Vector>() / count;
-        let counted = self.faces.clone().zip(&self.counts).filter(|(_, counts)| **counts);
-        let each = counted.map(|(face, _)| {
-            let corners: Vec<Vector> = corners_of_face(face).map(|v| at(v) - middle).collect();
-            let next = corners.iter().cycle().skip(1);
-            let area: Vector = corners.iter().zip(next).map(|(a, b)| 0.5 * a.cross(b)).sum();
-            corners.iter().sum::<Vector>().dot(&area) / corners.len() as f64
-        });
-        each.sum::<f64>() / 3.0
-    }
-}
-
-/// Shares the vector area (m²) of a face out among its corners.
-fn share_out(corners: &[Vector], shares: &mut [Vector]) {
-    let n = corners.len();
-    if let ([a, b, c], [x, y, z]) = (corners, &mut *shares) {
-        let third = (b - a).cross(&(c - a)) / 6.0;
-        (*x, *y, *z) = (third, third, third);
-        return;
-    }
-    let middle = corners.iter().sum::<Vector>() / n as f64;
-    let side = |i: usize| {
-        let [a, b] = [corners[i] - middle, corners[(i + 1) % n] - middle];
-        0.5 * a.cross(&b)
-    };
-    let whole: Vector = (0..n).map(side).sum();
-    for (i, share) in shares.iter_mut().enumerate() {
-        *share = (side(i) + side((i + n - 1) % n)) / 3.0 + whole / (3.0 * n as f64);
     }
 }

@@ -37,6 +37,7 @@ mod tests;
 use crate::cloth::{Cloth, placed};
 use crate::contact::Contacts;
 use crate::force::AirScratch;
+use crate::interrupter::Interrupter;
 use crate::linear::{BlockJacobi, ConjugateGradient, Solved, Stop};
 use crate::settings::LinearSolver;
 use crate::state::{Coordinates, State};
@@ -103,6 +104,7 @@ pub(crate) struct Implicit {
     /// Zeros.
     still: State,
     air: AirScratch,
+    interrupter: Interrupter,
     /// Iterations since they were last counted.
     pub(crate) iterations: u32,
 }
@@ -114,6 +116,7 @@ impl Implicit {
         cloths: &[Cloth],
         system: &System,
         state: &State,
+        interrupter: &Interrupter,
     ) -> Self {
         let count = state.len();
         let springs = placed(cloths)
@@ -129,13 +132,14 @@ impl Implicit {
             pulling: pull::Scratch::new(count, taut.edge_count()),
             taut,
             pieces: Pieces::new(count, springs),
-            gradients: ConjugateGradient::new(count),
+            gradients: ConjugateGradient::new(count, interrupter),
             base: State::zeros(count),
             at: State::zeros(count),
             residual: State::zeros(count),
             reached: State::zeros(count).position,
             still: State::zeros(count),
             air: AirScratch::default(),
+            interrupter: interrupter.clone(),
             iterations: 0,
         }
     }
@@ -198,6 +202,9 @@ impl Implicit {
         self.gradients.start();
         let mut gained = 0.0;
         for iteration in 1..=most {
+            if self.interrupter.is_asked() {
+                break;
+            }
             self.linearize(system, contacts, step, h);
             let solved = self.solve(system, contacts, step);
             self.iterations += solved.iterations;
@@ -220,7 +227,8 @@ impl Implicit {
             self.approach(system, contacts, step, h);
             self.reached.copy_from(&self.at.position);
             let clipped = contacts.truncate(&mut self.reached);
-            if round == ROUNDS || clipped as usize * MANY <= system.particle_count() {
+            let is_whole = clipped as usize * MANY <= system.particle_count();
+            if round == ROUNDS || is_whole || self.interrupter.is_asked() {
                 break;
             }
             contacts.start_again(&self.reached);

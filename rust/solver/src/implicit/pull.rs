@@ -61,6 +61,9 @@ impl Implicit {
         let mut stiffer = STIFFER;
         let (mut last, mut in_vain) = (f64::INFINITY, 0);
         for _ in 0..ROUNDS {
+            if self.interrupter.is_asked() {
+                break;
+            }
             self.taut.freeze(&self.at.position, &self.pulling.tensions, stiffer, system);
             let excess = self.taut.largest_excess(&self.at.position);
             in_vain = if excess > IN_VAIN * last && excess <= last { in_vain + 1 } else { 0 };

@@ -91,10 +91,12 @@ impl Making {
         }
         let state = State::at_rest(positions);
         let rule = Rule::ImplicitEuler;
-        let mut implicit = Implicit::new(rule, LinearSolver::Ldlt, &cloths, &system, &state);
+        let interrupter = Interrupter::default();
+        let mut implicit =
+            Implicit::new(rule, LinearSolver::Ldlt, &cloths, &system, &state, &interrupter);
         implicit.follow_pins(&system);
         let base = positions.iter().zip(velocities).map(|(x, v)| x - H * v).collect();
-        let contacts = Contacts::new(&cloths, &[]);
+        let contacts = Contacts::new(&cloths, &[], &interrupter);
         Self { cloths, system, implicit, contacts, base }
     }
 

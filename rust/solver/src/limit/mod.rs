@@ -3,6 +3,7 @@
 //! `stiffen` (the paper's equation 6) is part of the spring law; `provot` and `project` act on the state after
 //! every step.
 
+mod marks;
 mod order;
 mod project;
 mod provot;
@@ -12,6 +13,7 @@ pub(crate) use provot::Provot;
 
 use crate::cloth::Cloth;
 use crate::contact::Walls;
+use crate::interrupter::Interrupter;
 use crate::material::Limiter;
 use crate::state::State;
 
@@ -46,10 +48,14 @@ impl Limit {
         }
     }
 
-    /// The longest step (s) that a cloth's limiter keeps up with.
-    pub(crate) fn longest_step(cloth: &Cloth, gravity: f64) -> f64 {
+    /// The longest step (s) that a cloth's limiter keeps up with if its springs have these rest lengths (m).
+    pub(crate) fn longest_step(
+        cloth: &Cloth,
+        gravity: f64,
+        rest_lengths: impl Iterator<Item = f64>,
+    ) -> f64 {
         match cloth.material.limiter {
-            Limiter::Project => Project::longest_step(cloth, gravity),
+            Limiter::Project => Project::longest_step(cloth, gravity, rest_lengths),
             Limiter::None | Limiter::Stiffen | Limiter::Provot => f64::INFINITY,
         }
     }
@@ -68,13 +74,16 @@ impl Limit {
         h: f64,
         most_sweeps: usize,
         walls: &Walls,
+        interrupter: &Interrupter,
     ) -> bool {
         match self {
             Self::Provot(limit) => {
                 limit.apply(state, inverse_masses, h);
                 true
             }
-            Self::Project(limit) => limit.hold(state, inverse_masses, most_sweeps, walls),
+            Self::Project(limit) => {
+                limit.hold(state, inverse_masses, most_sweeps, walls, interrupter)
+            }
         }
     }
 
@@ -86,10 +95,11 @@ impl Limit {
         inverse_masses: &[f64],
         h: f64,
         is_last: bool,
+        interrupter: &Interrupter,
     ) {
         match self {
             Self::Provot(limit) => limit.apply(state, inverse_masses, h),
-            Self::Project(limit) => limit.apply(state, inverse_masses, h, is_last),
+            Self::Project(limit) => limit.apply(state, inverse_masses, h, is_last, interrupter),
         }
     }
 }

@@ -19,9 +19,11 @@
 
 use std::collections::BTreeMap;
 
+use super::marks::BitSet;
 use super::order::{Edge, outward};
 use crate::cloth::Cloth;
 use crate::contact::Walls;
+use crate::interrupter::Interrupter;
 use crate::law::Spring;
 use crate::material::SpringKind;
 use crate::state::State;
@@ -72,10 +74,15 @@ pub(crate) struct Project {
 impl Project {
     /// The longest step (s) in which a particle that carries a cloth's whole weight moves by no more than an edge may
     /// get longer: with longer ones the sweeps of a step do not keep up, and end up adding energy.
-    pub(crate) fn longest_step(cloth: &Cloth, gravity: f64) -> f64 {
-        let stretch = cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Stretch);
-        let (count, length) = stretch
-            .fold((0.0, 0.0), |(count, sum), spring| (count + 1.0, sum + spring.rest_length));
+    pub(crate) fn longest_step(
+        cloth: &Cloth,
+        gravity: f64,
+        rest_lengths: impl Iterator<Item = f64>,
+    ) -> f64 {
+        let springs = cloth.springs.iter().zip(rest_lengths);
+        let (count, length) = springs
+            .filter(|(spring, _)| spring.kind == SpringKind::Stretch)
+            .fold((0.0, 0.0), |(count, sum), (_, rest_length)| (count + 1.0, sum + rest_length));
         let rate = cloth.material.deformation_rate.max(LEAST_RATE);
         let weight_by_mass = gravity * cloth.masses.len() as f64;
         if count == 0.0 || cloth.pins.is_empty() || weight_by_mass == 0.0 {
@@ -136,6 +143,7 @@ impl Project {
         inverse_masses: &[f64],
         h: f64,
         is_last: bool,
+        interrupter: &Interrupter,
     ) {
         if !self.find_too_long(state) {
             return;
@@ -153,7 +161,8 @@ impl Project {
             }
         }
         if is_last {
-            self.project(state, inverse_masses, SWEEPS_AT_END, &Walls::default());
+            let walls = &Walls::default();
+            self.project(state, inverse_masses, SWEEPS_AT_END, walls, interrupter);
         }
         self.now.clear();
     }
@@ -165,11 +174,12 @@ impl Project {
         inverse_masses: &[f64],
         most_sweeps: usize,
         walls: &Walls,
+        interrupter: &Interrupter,
     ) -> bool {
         if !self.find_too_long(state) {
             return true;
         }
-        let is_held = self.project(state, inverse_masses, most_sweeps, walls);
+        let is_held = self.project(state, inverse_masses, most_sweeps, walls, interrupter);
         self.now.clear();
         is_held
     }
@@ -217,12 +227,13 @@ impl Project {
         inverse_masses: &[f64],
         most: usize,
         walls: &Walls,
+        interrupter: &Interrupter,
     ) -> bool {
         for sweep in 0..most {
             let evenness = METRICS[sweep / SWEEPS_OF_A_METRIC % METRICS.len()];
             self.sweep_positions(state, inverse_masses, evenness, walls);
             std::mem::swap(&mut self.now, &mut self.later);
-            if self.now.is_empty() {
+            if self.now.is_empty() || interrupter.is_asked() {
                 break;
             }
         }
@@ -342,58 +353,4 @@ fn adds_energy(shares: [f64; 2], inverse_masses: [f64; 2], near: f64, far: f64) 
     let gain_near = (near_after * near_after - near * near) / inverse_masses[0];
     let gain_far = (far_after * far_after - far * far) / inverse_masses[1];
     gain_near + gain_far > 0.0
-}
-
-/// Marks on edges, by rank.
-#[derive(Debug)]
-struct BitSet {
-    words: Vec<u64>,
-}
-
-impl BitSet {
-    fn new(count: usize) -> Self {
-        Self { words: vec![0; count.div_ceil(64)] }
-    }
-
-    fn insert(&mut self, index: usize) {
-        self.words[index / 64] |= 1 << (index % 64);
-    }
-
-    fn clear(&mut self) {
-        self.words.fill(0);
-    }
-
-    fn is_empty(&self) -> bool {
-        self.words.iter().all(|&word| word == 0)
-    }
-
-    /// The first mark at or after an index.
-    fn first_from(&self, index: usize) -> Option<usize> {
-        let mut word = index / 64;
-        let mut bits = self.words.get(word)? & (!0 << (index % 64));
-        while bits == 0 {
-            word += 1;
-            bits = *self.words.get(word)?;
-        }
-        Some(64 * word + bits.trailing_zeros() as usize)
-    }
-
-    /// The last mark before an index.
-    fn last_before(&self, index: usize) -> Option<usize> {
-        let mut word = index / 64;
-        let below = !(!0 << (index % 64));
-        let mut bits = self.words.get(word).map_or(0, |bits| bits & below);
-        while bits == 0 {
-            word = word.checked_sub(1)?;
-            bits = self.words[word];
-        }
-        Some(64 * word + 63 - bits.leading_zeros() as usize)
-    }
-
-    /// Removes and returns the first mark at or after an index.
-    fn take_from(&mut self, index: usize) -> Option<usize> {
-        let first = self.first_from(index)?;
-        self.words[first / 64] &= !(1 << (first % 64));
-        Some(first)
-    }
 }

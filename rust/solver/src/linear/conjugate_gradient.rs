@@ -11,6 +11,7 @@
 use rayon::prelude::*;
 
 use super::field::{CHUNK, Field};
+use crate::interrupter::Interrupter;
 use crate::state::Coordinates;
 
 /// A product with a symmetric positive definite matrix.
@@ -54,10 +55,11 @@ pub(crate) struct ConjugateGradient {
     partial: Vec<f64>,
     /// What all iterations have gained.
     gained: f64,
+    interrupter: Interrupter,
 }
 
 impl ConjugateGradient {
-    pub(crate) fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize, interrupter: &Interrupter) -> Self {
         Self {
             residual: Field::zeros(count),
             solution: Field::zeros(count),
@@ -66,6 +68,7 @@ impl ConjugateGradient {
             product: Field::zeros(count),
             partial: vec![0.0; count.div_ceil(CHUNK)],
             gained: 0.0,
+            interrupter: interrupter.clone(),
         }
     }
 
@@ -90,12 +93,21 @@ impl ConjugateGradient {
         inverse: &mut dyn Inverse,
         stop: Stop,
     ) -> Solved {
-        let Self { residual, solution, preconditioned, direction, product, partial, gained } = self;
+        let Self {
+            residual,
+            solution,
+            preconditioned,
+            direction,
+            product,
+            partial,
+            gained,
+            interrupter,
+        } = self;
         solution.fill(0.0);
         let before = *gained;
         let mut last = f64::INFINITY;
         let mut iterations = 0;
-        while iterations < stop.most_iterations {
+        while iterations < stop.most_iterations && !interrupter.is_asked() {
             inverse.apply_inverse(residual, preconditioned);
             let rz = dot(residual, preconditioned, partial);
             if !rz.is_finite() {

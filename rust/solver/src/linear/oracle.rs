@@ -8,6 +8,7 @@ use sprs_ldl::Ldl;
 
 use super::problems::{grid, matrix};
 use super::{ConjugateGradient, Field, Forward, Graph, Inverse, Laplacian, Ldlt, Multigrid, Stop};
+use crate::interrupter::Interrupter;
 use crate::scatter::scattered;
 use crate::state::State;
 
@@ -214,7 +215,7 @@ fn a_solve_agrees_with_conjugate_gradients_behind_a_multigrid_cycle() {
         Ldlt::new(&graph, &problem.positions, &matrix).apply_inverse(&r, &mut z);
         let is_pinned = |particle: usize| pins.contains(&particle);
         let mut cycle = Multigrid::new(&problem.pairs, &matrix, &problem.positions, is_pinned);
-        let mut gradients = ConjugateGradient::new(count);
+        let mut gradients = ConjugateGradient::new(count, &Interrupter::default());
         let stop = Stop { tolerance: 1e-4, least_iterations: 0, most_iterations: 200 };
         let mut solution = [0, 1, 2].map(|_| vec![0.0; count]);
         for _ in 0..ROUNDS {

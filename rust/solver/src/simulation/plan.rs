@@ -25,7 +25,8 @@ impl Simulation {
         self.stable_step().min(self.limited_step())
     }
 
-    /// The largest stable step (s) of the springs and the wind as they are now, at most a frame; 0 if there is none.
+    /// The largest step (s) that is stable with the springs, the pressure and the wind of all the next frame, at most that; 0 if there
+    /// is none.
     fn stable_step(&self) -> f64 {
         let Some(rule) = explicit(self.settings.integrator) else {
             return self.frame_duration();
@@ -49,13 +50,22 @@ impl Simulation {
         self.plan().unwrap_or(0)
     }
 
-    /// Largest ratio of length to rest length over the springs of a cloth.
+    /// Largest ratio of length to the least rest length of the next frame, over the springs of a cloth.
     fn longest_ratio(&self, cloth: usize) -> f64 {
-        let (cloth, base) = (&self.cloths[cloth], self.bases[cloth]);
-        let ratio = |spring: &crate::law::Spring| {
-            length(&self.state, spring.ends, base) / spring.rest_length
-        };
-        cloth.springs.iter().map(ratio).fold(0.0, f64::max)
+        let (springs, base) = (&self.cloths[cloth].springs, self.bases[cloth]);
+        let ratios = springs.iter().zip(self.least_rest_lengths(cloth));
+        let ratios = ratios.map(|(spring, least)| length(&self.state, spring.ends, base) / least);
+        ratios.fold(0.0, f64::max)
+    }
+
+    /// The least rest length (m) of each spring of a cloth within the next frame.
+    fn least_rest_lengths(&self, cloth: usize) -> impl Iterator<Item = f64> {
+        let ends = self.rests[cloth].as_ref().map(|rest| rest.both());
+        let springs = self.cloths[cloth].springs.iter().enumerate();
+        springs.map(move |(number, spring)| match ends {
+            Some([from, to]) => from[number].min(to[number]),
+            None => spring.rest_length,
+        })
     }
 
     /// The longest step (s) that every cloth's limiter keeps up with.
@@ -64,7 +74,9 @@ impl Simulation {
             return f64::INFINITY;
         }
         let gravity = self.settings.gravity.norm();
-        let steps = self.cloths.iter().map(|cloth| Limit::longest_step(cloth, gravity));
+        let steps = self.cloths.iter().enumerate().map(|(number, cloth)| {
+            Limit::longest_step(cloth, gravity, self.least_rest_lengths(number))
+        });
         steps.fold(f64::INFINITY, f64::min)
     }
 
@@ -86,7 +98,7 @@ impl Simulation {
         };
         if let (Some(memory), None) = (self.method.memory(), asked) {
             let change = self.pins.largest_change(&self.state, duration);
-            let way = self.contacts.longest_way(&self.state.velocity, duration);
+            let way = self.longest_way();
             return Ok(self.accuracy.plan(memory.substeps, change, way, duration));
         }
         if let Some(count) = asked
@@ -103,6 +115,12 @@ impl Simulation {
                 Err(Error::Unstable { step: duration / count, bound, substeps })
             }
         }
+    }
+
+    /// How far (m) colliders and cloth go towards each other over the next frame at the most.
+    pub(super) fn longest_way(&self) -> f64 {
+        let pin_way = self.pins.longest_way(&self.state);
+        self.contacts.longest_way(&self.state.velocity, pin_way, self.frame_duration())
     }
 
     /// How exact a frame is after which things touch as they do now.
@@ -123,8 +141,7 @@ impl Simulation {
     /// Whether a frame of so many steps may be done once more with more, if they are too long for its contacts.
     pub(super) fn may_shorten(&self, substeps: u32) -> bool {
         let is_free = self.method.is_implicit() && self.settings.step_size == StepSize::Auto;
-        let way = self.contacts.longest_way(&self.state.velocity, self.frame_duration());
-        is_free && substeps < Accuracy::most_for_contacts(way)
+        is_free && substeps < Accuracy::most_for_contacts(self.longest_way())
     }
 }
 

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::goals::Goal;
 
 impl Simulation {
-    /// The whole state as bytes.
+    /// The whole state as bytes, with all that it was told for the next frame.
     #[must_use]
     pub fn checkpoint(&self) -> Vec<u8> {
         let (pins, pin_stiffness) = self.pins.held();
@@ -16,7 +16,10 @@ impl Simulation {
             substeps: self.substeps_taken,
             state: self.state.clone(),
             memory: self.method.memory().cloned(),
-            colliders: self.contacts.collider_positions().to_vec(),
+            gravity: self.settings.gravity,
+            winds: self.system.air.wind_velocities().collect(),
+            fields: self.system.air.fields().to_vec(),
+            colliders: self.contacts.collider_positions().clone(),
             shape: self.shape_numbers(),
             pins,
             pin_stiffness,
@@ -28,35 +31,111 @@ impl Simulation {
     /// Takes up the state of a checkpoint; what follows is bit-equal to never having stopped.
     ///
     /// # Errors
-    /// [`Error::BadCheckpoint`] when it is damaged or of other cloths or settings.
+    /// [`Error::BadCheckpoint`] when it is damaged or of other cloths or settings; nothing is then changed.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<()> {
         let checkpoint = Checkpoint::from_bytes(bytes)?;
-        let is_grabbable = |goal: &Goal| (goal.particle as usize) < self.state.len();
-        if checkpoint.digest != self.digest
-            || checkpoint.state.len() != self.state.len()
-            || checkpoint.colliders.len() != self.contacts.collider_positions().len()
-            || !checkpoint.grab.goals.iter().all(is_grabbable)
-            || !self.pins.restore(&checkpoint.pins, &checkpoint.pin_stiffness)
-        {
+        if checkpoint.digest != self.digest {
             return Err(Error::BadCheckpoint(
                 "is of another scene or other settings; accepted: the one that it was made from",
             ));
         }
+        let damaged = Error::BadCheckpoint("is damaged; accepted: a whole one");
+        let shape = self.read_shape(&checkpoint.shape).ok_or_else(|| damaged.clone())?;
+        if !self.fits(&checkpoint) {
+            return Err(damaged);
+        }
+        self.pins.restore(&checkpoint.pins, &checkpoint.pin_stiffness);
         if let (Some(memory), Some(restored)) = (self.method.memory_mut(), checkpoint.memory) {
             *memory = restored;
         }
-        self.contacts.place_colliders(&checkpoint.colliders);
+        self.contacts.place_colliders(checkpoint.colliders);
         self.state = checkpoint.state;
         self.frame = checkpoint.frame;
         self.substeps_taken = checkpoint.substeps;
         self.iterations_taken = 0;
+        self.clipped = 0;
         self.grab = checkpoint.grab;
-        self.follow_holds();
-        if !self.take_shape_numbers(&checkpoint.shape) {
-            return Err(Error::BadCheckpoint("is damaged; accepted: a whole one"));
+        self.settings.gravity = checkpoint.gravity;
+        self.system.gravity = checkpoint.gravity;
+        for (wind, velocity) in checkpoint.winds.into_iter().enumerate() {
+            self.system.air.set_wind_velocity(wind, velocity);
         }
+        self.system.air.set_fields(checkpoint.fields);
+        self.follow_holds();
+        self.take_shape(shape);
         self.method.follow_pins(&self.system);
         self.intersect();
         Ok(())
+    }
+
+    /// Whether a checkpoint holds as much of everything as there is here; its shape is looked at when it is read.
+    fn fits(&self, checkpoint: &Checkpoint) -> bool {
+        let is_grabbable = |goal: &Goal| (goal.particle as usize) < self.state.len();
+        let remembers_alike = match (self.method.memory(), &checkpoint.memory) {
+            (Some(own), Some(restored)) => own.tensions.len() == restored.tensions.len(),
+            (own, restored) => own.is_none() && restored.is_none(),
+        };
+        let own = &self.contacts.collider_positions()[0];
+        checkpoint.state.len() == self.state.len()
+            && checkpoint.winds.len() == self.system.air.wind_count()
+            && checkpoint.colliders.iter().all(|points| points.len() == own.len())
+            && checkpoint.grab.goals.iter().all(is_grabbable)
+            && self.pins.fit(&checkpoint.pins, &checkpoint.pin_stiffness)
+            && remembers_alike
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloth::{Cloth, Mass};
+    use crate::force::Pressure;
+    use crate::implicit::Memory;
+    use crate::material::SpringMaterial;
+    use crate::settings::Settings;
+    use boucle_geometry::{Mesh, Vector};
+
+    fn inflated() -> Simulation {
+        let mesh = Mesh::from_faces(4, &[[0, 1, 2], [0, 2, 3]]).expect("a mesh");
+        let positions = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let positions = positions.map(|[x, y]| Vector::new(x, y, 0.0)).to_vec();
+        let (mass, material) = (Mass::Density(0.2), SpringMaterial::default());
+        let cloth = Cloth::from_mesh("c", mesh, positions, &mass, material, vec![0]);
+        let pressure = Some(Pressure { uniform: 1.0, ..Pressure::default() });
+        let cloth = Cloth { pressure, ..cloth.expect("a cloth") };
+        let settings = Settings { threads: 1, ..Settings::default() };
+        Simulation::new(vec![cloth], Vec::new(), settings).expect("a simulation")
+    }
+
+    /// Each is whole by its checksum, and of the same scene by its digest.
+    #[test]
+    fn a_checkpoint_that_does_not_fit_is_refused_before_anything_changes() {
+        let mut told = inflated();
+        told.set_rest(0, None, Some(&[0.1; 4])).expect("accepted");
+        told.advance().expect("a frame");
+        let mut simulation = inflated();
+        let before = simulation.checkpoint();
+        let spoils: [fn(&mut Checkpoint); 10] = [
+            |bad| bad.shape.truncate(3),
+            |bad| bad.shape.push(0.0),
+            |bad| bad.shape[0] += 1.0,
+            |bad| bad.shape[1] = 0.0,
+            |bad| bad.shape.last_mut().into_iter().for_each(|number| *number = f64::NAN),
+            |bad| bad.memory = None,
+            |bad| bad.memory = Some(Memory::new(&bad.state, 1)),
+            |bad| bad.pin_stiffness.clear(),
+            |bad| bad.pins.clear(),
+            |bad| bad.colliders = [(); 2].map(|()| vec![Vector::zeros()]),
+        ];
+        for (number, spoil) in spoils.iter().enumerate() {
+            let mut bad = Checkpoint::from_bytes(&told.checkpoint()).expect("a whole one");
+            spoil(&mut bad);
+            let refused = simulation.restore(&bad.to_bytes());
+            let expected = Error::BadCheckpoint("is damaged; accepted: a whole one");
+            assert_eq!(refused, Err(expected), "{number}");
+            assert!(simulation.checkpoint() == before, "{number}");
+        }
+        simulation.restore(&told.checkpoint()).expect("a whole one");
+        assert!(simulation.checkpoint() == told.checkpoint());
     }
 }

@@ -5,7 +5,6 @@ use boucle_geometry::Vector;
 use super::Simulation;
 use crate::cloth::check_positions;
 use crate::error::{Error, Result};
-use crate::force::Level;
 use crate::limit::Limit;
 use crate::material::SpringKind;
 use crate::rest::Rest;
@@ -38,7 +37,6 @@ impl Simulation {
         if let Some(rest) = &mut self.rests[cloth] {
             let given = &self.cloths[cloth];
             rest.aim(given, shape, shrink.unwrap_or(&given.tailoring.shrink));
-            self.contacts.scale_rest(self.bases[cloth], &rest.scales(given));
         }
         Ok(())
     }
@@ -74,7 +72,7 @@ impl Simulation {
     }
 
     /// Begins to keep the rest lengths of a cloth, whose springs are still as they were given.
-    fn ensure_rest(&mut self, cloth: usize) {
+    pub(super) fn ensure_rest(&mut self, cloth: usize) {
         let Self { rests, cloths, bases, system, .. } = self;
         let count = system.particle_count();
         rests[cloth].get_or_insert_with(|| {
@@ -121,16 +119,18 @@ impl Simulation {
         }
     }
 
-    fn follow_welds(&mut self) {
+    pub(super) fn follow_welds(&mut self) {
         self.method.follow_stiffness(&self.cloths);
         self.follow_pins();
     }
 
-    fn put_rest(&mut self, cloth: usize, part: f64) {
-        let Self { rests, cloths, bases, system, method, limits, .. } = self;
+    /// Takes the rest lengths of a cloth after a part of the frame, and the contact distances that go with them.
+    pub(super) fn put_rest(&mut self, cloth: usize, part: f64) {
+        let Self { rests, cloths, bases, system, method, limits, contacts, .. } = self;
         let Some(rest) = &rests[cloth] else { return };
         let (own, base) = (&mut cloths[cloth], bases[cloth]);
         rest.put(part, own, &mut system.layout);
+        contacts.scale_rest(base, &rest.scales(own));
         method.follow_rest_lengths(own, base);
         for limit in limits {
             limit.follow_rest_lengths(own, base);
@@ -154,71 +154,6 @@ impl Simulation {
         let mut limit = limit?;
         limit.follow_rest_lengths(own, base);
         Some(limit)
-    }
-
-    /// The numbers of a checkpoint: for each cloth how many rest lengths are kept, and those; pressures; welded seams.
-    pub(super) fn shape_numbers(&self) -> Vec<f64> {
-        let mut numbers = Vec::new();
-        if self.rests.iter().any(Option::is_some) {
-            for rest in &self.rests {
-                let lengths = rest.as_ref().map_or(&[][..], |rest| rest.target());
-                numbers.push(lengths.len() as f64);
-                numbers.extend(lengths);
-            }
-        } else if !self.seams.is_empty() || !self.system.air.pressures.is_empty() {
-            numbers.resize(self.rests.len(), 0.0);
-        }
-        numbers.extend(self.system.air.pressures.targets().flatten());
-        numbers.extend(self.seams.welded().map(|is_welded| f64::from(u8::from(is_welded))));
-        numbers
-    }
-
-    /// Takes up the numbers of a checkpoint; false if they are not of these cloths.
-    pub(super) fn take_shape_numbers(&mut self, numbers: &[f64]) -> bool {
-        let mut rest_of_numbers = numbers;
-        let mut take = |count: usize| {
-            let (taken, others) = rest_of_numbers.split_at_checked(count)?;
-            rest_of_numbers = others;
-            Some(taken.to_vec())
-        };
-        let mut lengths = vec![Vec::new(); self.cloths.len()];
-        if !numbers.is_empty() {
-            for lengths in &mut lengths {
-                let Some(count) = take(1) else { return false };
-                let Some(own) = take(count[0] as usize) else { return false };
-                *lengths = own;
-            }
-        }
-        let level_count = self.system.air.pressures.targets().count();
-        let seam_count = self.seams.welded().count();
-        let (Some(levels), Some(welded)) = (take(3 * level_count), take(seam_count)) else {
-            return numbers.is_empty() && self.take_lengths(&lengths);
-        };
-        let levels: &[Level] = levels.as_chunks::<3>().0;
-        self.system.air.pressures.jump(levels.iter().copied());
-        let Self { seams, cloths, system, .. } = self;
-        if seams.jump(welded.iter().map(|w| *w > 0.0), cloths, &mut system.layout) {
-            self.follow_welds();
-        }
-        self.take_lengths(&lengths)
-    }
-
-    fn take_lengths(&mut self, lengths: &[Vec<f64>]) -> bool {
-        for (cloth, lengths) in lengths.iter().enumerate() {
-            if !lengths.is_empty() {
-                self.ensure_rest(cloth);
-            }
-            let Some(rest) = &mut self.rests[cloth] else { continue };
-            if lengths.is_empty() {
-                rest.aim_at_given();
-                rest.arrive();
-            } else if !rest.jump(lengths) {
-                return false;
-            }
-            self.contacts.scale_rest(self.bases[cloth], &rest.scales(&self.cloths[cloth]));
-            self.put_rest(cloth, 1.0);
-        }
-        true
     }
 
     /// The seams of a cloth and how far apart (m) the ends of each are.

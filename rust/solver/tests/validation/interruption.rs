@@ -100,3 +100,31 @@ fn a_frame_of_many_steps_stops_at_the_next_of_them() {
     assert_eq!(outcome, Err(Error::Interrupted { frame: 2 }));
     assert!(waited < Duration::from_millis(500), "{waited:?}");
 }
+
+/// One step is all of this frame, and would go on for many seconds: three sheets that fall through each other are kept apart.
+#[test]
+fn a_frame_of_one_long_step_stops_in_its_midst() {
+    let sheet = |number: u32| {
+        let sheet = patch([96, 96], 1.0, SpringMaterial::default());
+        let height = 0.05 * f64::from(number + 1);
+        let wavy = placed(sheet, |x| x + (height + 0.02 * (25.0 * x.x).sin()) * Vector::z());
+        colliding(wavy, 0.004, 0.3)
+    };
+    let settings = Settings { step_size: StepSize::Substeps(1), threads: 2, ..Settings::default() };
+    let mut simulation = among((0..3).map(sheet).collect(), vec![floor(0.3)], settings);
+    for (cloth, speed) in [-3.0, -6.0, -10.0].into_iter().enumerate() {
+        simulation.set_velocities(cloth, &[Vector::new(0.0, 0.0, speed); 96 * 96]);
+    }
+    let before = simulation.checkpoint();
+    let interrupter = simulation.interrupter();
+    let (outcome, waited) = std::thread::scope(|scope| {
+        let advanced = scope.spawn(|| simulation.advance());
+        std::thread::sleep(Duration::from_millis(300));
+        let asked = std::time::Instant::now();
+        interrupter.interrupt();
+        (advanced.join().expect("no panic"), asked.elapsed())
+    });
+    assert_eq!(outcome, Err(Error::Interrupted { frame: 2 }));
+    assert!(waited < Duration::from_secs(2), "{waited:?}");
+    assert!(simulation.checkpoint() == before);
+}

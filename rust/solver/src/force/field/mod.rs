@@ -15,10 +15,12 @@
 mod falloff;
 mod kinds;
 mod noise;
+mod numbers;
 
 pub use falloff::{Falloff, FalloffShape, Range, Side};
 pub(super) use kinds::Push;
 pub(super) use noise::draw;
+pub(crate) use numbers::COUNT as NUMBERS;
 
 use boucle_geometry::Vector;
 

@@ -4,6 +4,7 @@ use super::super::conjugate_gradient::{ConjugateGradient, Stop};
 use super::super::laplacian::Forward;
 use super::super::problems::{grid, matrix};
 use super::*;
+use crate::interrupter::Interrupter;
 use crate::scatter::scattered;
 use crate::state::State;
 
@@ -179,7 +180,7 @@ fn conjugate_gradients_need_as_many_iterations_as_with_the_exact_inverse() {
         let mut ldlt = Ldlt::new(&graph, &positions, &matrix);
         for (other, tolerance) in [(matrix_of(5000, 0.8), 1e-3), (matrix_of(5000, 0.8), 1e-5)] {
             let iterations = |inverse: &mut dyn Inverse| {
-                let mut gradients = ConjugateGradient::new(count);
+                let mut gradients = ConjugateGradient::new(count, &Interrupter::default());
                 gradients.take_residual(&state.position);
                 let stop = Stop { tolerance, least_iterations: 0, most_iterations: 100 };
                 gradients

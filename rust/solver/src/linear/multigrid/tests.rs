@@ -2,6 +2,7 @@ use super::super::conjugate_gradient::{ConjugateGradient, Stop};
 use super::super::laplacian::Forward;
 use super::super::problems::{grid, matrix};
 use super::*;
+use crate::interrupter::Interrupter;
 use crate::scatter::scattered;
 use crate::state::State;
 
@@ -43,7 +44,7 @@ fn iterations(side: u32, pins: &[usize]) -> (u32, f64) {
             *to = f64::from(*from);
         }
     }
-    let mut gradients = ConjugateGradient::new(count);
+    let mut gradients = ConjugateGradient::new(count, &Interrupter::default());
     gradients.start();
     gradients.take_residual(&right.position);
     let stop = Stop { tolerance: 1e-3, least_iterations: 0, most_iterations: 300 };

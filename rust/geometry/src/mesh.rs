@@ -143,6 +143,14 @@ impl Mesh {
         self.face_starts.len().saturating_sub(1)
     }
 
+    /// The triangles that the faces fall into: fans around their first corners.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + Clone {
+        self.faces().flat_map(|corners| {
+            let first = corners[0];
+            corners[1..].windows(2).map(move |pair| [first, pair[0], pair[1]])
+        })
+    }
+
     /// How many triangles the faces fall into: corners less two, each.
     #[must_use]
     pub fn triangle_count(&self) -> usize {

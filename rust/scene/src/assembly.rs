@@ -4,7 +4,7 @@ use boucle_geometry::{Mesh, Vector};
 use boucle_solver::{Certificate, Cloth, Settings, Simulation, Tailoring};
 
 use crate::collider::{ColliderTrack, RestCollider};
-use crate::description::{Choice, ClothDescription, Grid, Scene};
+use crate::description::{Choice, ClothDescription, FabricDescription, Grid, Model, Scene};
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::pins::PinTrack;
@@ -185,13 +185,20 @@ fn cloth(
         rest.positions.len(),
         &format!("{at}.collision"),
     )?;
-    let (mass, material) = (description.mass(), description.springs.material());
+    let mass = description.mass();
+    let fabric = (description.model == Model::Fabric).then_some(&description.fabric);
+    let material =
+        fabric.map_or_else(|| description.springs.material(), FabricDescription::material);
     let loose_edges = rest.mesh.loose_edges().to_vec();
     let (shape, start) = match rest.rest {
         Some(shape) => (shape, Some(rest.positions)),
         None => (rest.positions, None),
     };
     let made = Cloth::from_mesh(&description.name, rest.mesh, shape, &mass, material, pins)
+        .and_then(|cloth| match fabric {
+            Some(fabric) => cloth.of_fabric(fabric.fabric()),
+            None => Ok(cloth),
+        })
         .and_then(|cloth| match start {
             Some(start) => cloth.starting_at(start),
             None => Ok(cloth),

@@ -4,6 +4,7 @@ use boucle_geometry::{Mesh, Vector};
 
 use crate::collision::Collision;
 use crate::error::{Error, Result, bad_mesh};
+use crate::fabric::{Fabric, Warp, edges};
 use crate::force::Pressure;
 use crate::law::{Spring, springs_of_mesh};
 use crate::material::{PinMaterial, SpringMaterial, within_one};
@@ -45,6 +46,8 @@ pub struct Cloth {
     pub pin_material: PinMaterial,
     /// Air damping, damping law, deformation rate and limiter; the springs hold their own stiffness.
     pub material: SpringMaterial,
+    /// What it is made of beside springs; nothing if `None`.
+    pub fabric: Option<Fabric>,
     /// How it collides; not at all if `None`.
     pub collision: Option<Collision>,
     /// A rest shape of its own, shrink, seams.
@@ -101,12 +104,44 @@ impl Cloth {
             pin_weights: Vec::new(),
             pin_material: PinMaterial::default(),
             material,
+            fabric: None,
             collision: None,
             tailoring: Tailoring::default(),
             pressure: None,
         };
         cloth.check()?;
         Ok(cloth)
+    }
+
+    /// The same cloth, of fabric in the place of springs. Of the material, air damping, deformation rate and limiter hold.
+    ///
+    /// # Errors
+    /// When the fabric is not accepted.
+    pub fn of_fabric(self, fabric: Fabric) -> Result<Self> {
+        fabric.check()?;
+        if let Warp::Mapped(map) = &fabric.warp {
+            let (got, wanted) = (map.len(), self.mesh.faces().map(<[u32]>::len).sum::<usize>());
+            if got != wanted {
+                let accepted = format!("{wanted}, one a corner of a face");
+                return self.refuse(format!("its map has {got} places; accepted: {accepted}"));
+            }
+        }
+        for (number, [a, b, c]) in self.mesh.triangles().enumerate() {
+            let [a, b, c] = [a, b, c].map(|corner| self.positions[corner as usize]);
+            if !((b - a).cross(&(c - a)).norm() > 1e-18) {
+                let reason = format!(
+                    "triangle {number} of its faces has no area; accepted: faces that fan out"
+                );
+                return self.refuse(reason);
+            }
+        }
+        let springs = edges(&self.mesh, &self.positions);
+        Ok(Self { springs, fabric: Some(fabric), ..self })
+    }
+
+    /// Positions (m) of the shape in which it is at rest.
+    pub(crate) fn rest_positions(&self) -> &[Vector] {
+        self.tailoring.rest_positions.as_deref().unwrap_or(&self.positions)
     }
 
     /// Refuses a cloth that cannot be simulated.
@@ -117,6 +152,7 @@ impl Cloth {
         self.material.check()?;
         check_positions(&self.name, &self.positions)?;
         self.check_springs()?;
+        self.fabric.as_ref().map_or(Ok(()), Fabric::check)?;
         self.check_tailoring()?;
         if let Some(pressure) = &self.pressure {
             pressure.check(&self.name, self.positions.len())?;

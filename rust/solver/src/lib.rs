@@ -20,6 +20,7 @@ mod collision;
 mod contact;
 mod digest;
 mod error;
+mod fabric;
 mod force;
 mod goals;
 mod grab;
@@ -53,6 +54,7 @@ pub use collider::{Collider, Shape};
 pub use collision::Collision;
 pub use contact::Detection;
 pub use error::{Error, Result};
+pub use fabric::{Fabric, Warp};
 pub use force::{
     Falloff, FalloffShape, Field, FieldKind, FieldShape, Pressure, Range, Region, Side, Wind,
     WindLaw,

@@ -2,6 +2,7 @@
 
 use crate::cloth::Cloth;
 use crate::contact::{Contacts, Response};
+use crate::fabric::Fabrics;
 use crate::implicit::{Implicit, Memory, Rule};
 use crate::integrator::{Integrator, Scratch, explicit};
 use crate::interrupter::Interrupter;
@@ -77,9 +78,9 @@ impl Method {
     }
 
     /// Takes the present stiffness of the cloths' springs.
-    pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth]) {
+    pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth], fabrics: &Fabrics) {
         if let Self::Implicit(implicit) = self {
-            implicit.follow_stiffness(cloths);
+            implicit.follow_stiffness(cloths, fabrics);
         }
     }
 

@@ -12,6 +12,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::cloth::Cloth;
+use crate::fabric::{FabricScratch, Fabrics};
 use crate::force::{Air, AirScratch, Wind};
 use crate::goals::Goals;
 use crate::kernel::{BLOCK, CHUNK, Layout, Sums, add_from_inside, add_from_outside};
@@ -21,6 +22,7 @@ use crate::state::State;
 #[derive(Debug)]
 pub(crate) struct System {
     pub(crate) layout: Layout,
+    pub(crate) fabrics: Fabrics,
     pub(crate) air: Air,
     pub(crate) gravity: Vector,
     pub(crate) goals: Goals,
@@ -31,6 +33,13 @@ pub(crate) struct System {
     /// Viscous air damping (N·s/m) of each particle.
     pub(crate) air_damping: Vec<f64>,
     arch: Arch,
+}
+
+/// What faces and hinges do in the state whose forces were last evaluated.
+#[derive(Debug, Default)]
+pub(crate) struct Observed {
+    pub(crate) fabric: FabricScratch,
+    pub(crate) air: AirScratch,
 }
 
 /// How particles move by their accelerations a: what every integrator is made of.
@@ -68,6 +77,7 @@ impl System {
             .flat_map(|cloth| std::iter::repeat_n(cloth.material.air_damping, cloth.masses.len()));
         Self {
             layout: Layout::new(cloths),
+            fabrics: Fabrics::new(cloths),
             air: Air::new(winds, cloths),
             gravity,
             goals: Goals::default(),
@@ -100,17 +110,18 @@ impl System {
         &self,
         at: &State,
         out: &mut State,
-        air: &mut AirScratch,
+        observed: &mut Observed,
         motion: Motion<'_>,
     ) {
-        self.air.observe(at, air);
-        let air = &*air;
+        self.air.observe(at, &mut observed.air);
+        self.fabrics.observe(at, &mut observed.fabric);
+        let observed = &*observed;
         let [x, y, z] = out.position.0.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));
         let [u, v, w] = out.velocity.0.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));
         let chunks = (x, y, z, u, v, w).into_par_iter().enumerate();
         chunks.for_each(|(chunk, (x, y, z, u, v, w))| {
             let out = [(x, u), (y, v), (z, w)];
-            self.arch.dispatch(Task { system: self, chunk, at, air, motion, out });
+            self.arch.dispatch(Task { system: self, chunk, at, observed, motion, out });
         });
     }
 }
@@ -120,7 +131,7 @@ struct Task<'a> {
     system: &'a System,
     chunk: usize,
     at: &'a State,
-    air: &'a AirScratch,
+    observed: &'a Observed,
     motion: Motion<'a>,
     /// Positions and velocities to fill, axis by axis.
     out: [(&'a mut [f64], &'a mut [f64]); 3],
@@ -134,7 +145,10 @@ impl WithSimd for Task<'_> {
         let Self { system, chunk, at, .. } = self;
         let mut sums = Sums::zeros();
         if !system.air.is_still() {
-            system.air.add_forces(chunk, at, self.air, &mut sums.arriving);
+            system.air.add_forces(chunk, at, &self.observed.air, &mut sums.arriving);
+        }
+        if !system.fabrics.is_empty() {
+            system.fabrics.add_forces(chunk, at, &self.observed.fabric, &mut sums.arriving);
         }
         if !system.goals.is_empty() {
             system.goals.add_forces(chunk, at, self.motion.stage, &mut sums.arriving);

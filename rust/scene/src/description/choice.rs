@@ -141,11 +141,6 @@ macro_rules! later_table {
 }
 
 later_table! {
-    /// `[cloth.fabric]`.
-    FabricKeys {
-        "stretch_warp", "stretch_weft", "shear", "bend_warp", "bend_weft", "damping_ratio",
-        "deformation_rate", "preset",
-    }
     /// `[tear]`.
     TearKeys { "enabled", "force", "strain" }
 }

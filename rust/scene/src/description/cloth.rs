@@ -4,8 +4,9 @@ use boucle_geometry::Vector;
 use boucle_solver::{DampingLaw, Limiter, Mass, PinMaterial, SpringMaterial, StiffnessFrom};
 use serde::{Deserialize, Serialize};
 
-use super::choice::{Choice, FabricKeys, Later, NotYet};
+use super::choice::{Choice, NotYet};
 use super::collision::ClothCollision;
+use super::fabric::FabricDescription;
 use super::pins::Pins;
 use super::shape::{PressureDescription, SewingDescription, Shrink};
 use super::table;
@@ -70,8 +71,9 @@ pub struct ClothDescription {
     /// `[cloth.springs]`.
     #[serde(default, deserialize_with = "table::one")]
     pub springs: Springs,
-    /// `[cloth.fabric]`, for later.
-    pub fabric: Option<Later<FabricKeys>>,
+    /// `[cloth.fabric]`.
+    #[serde(default, deserialize_with = "table::one")]
+    pub fabric: FabricDescription,
     /// A named fabric, for later.
     pub preset: Option<NotYet>,
 }
@@ -133,6 +135,7 @@ impl ClothDescription {
         }
         let material = self.pin_material();
         material.check().map_err(|error| Error::input(format!("{at}.{error}")))?;
+        self.fabric.check(&format!("{at}.fabric"))?;
         let material = self.springs.material();
         material.check().map_err(|error| Error::input(format!("{at}.{error}")))
     }
@@ -256,11 +259,13 @@ pub enum Model {
     /// The classic mass-spring model.
     #[default]
     Springs,
+    /// A continuum: a membrane that bends at hinges.
+    Fabric,
 }
 
 impl Choice for Model {
-    const WORDS: &'static [(&'static str, Self)] = &[("springs", Self::Springs)];
-    const LATER: &'static [&'static str] = &["fabric"];
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("springs", Self::Springs), ("fabric", Self::Fabric)];
 }
 
 impl Choice for StiffnessFrom {

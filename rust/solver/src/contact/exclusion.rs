@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use boucle_geometry::Mesh;
 
-use super::features::{Features, triangles};
+use super::features::Features;
 
 /// Excluded vertices, and what collides among them all the same because a triangle that is not left out has it.
 #[derive(Debug)]
@@ -37,7 +37,7 @@ impl Exclusion {
             self.is_excluded[(base + vertex) as usize] = true;
         }
         let collides = |corners: &[u32; 3]| corners.iter().any(|&c| !self.excludes(base + c));
-        let colliding: Vec<[u32; 3]> = triangles(mesh).filter(collides).collect();
+        let colliding: Vec<[u32; 3]> = mesh.triangles().filter(collides).collect();
         let mut features = Features::default();
         features.add_triangles(&colliding, mesh.vertex_count(), base);
         let Self { is_excluded, points, edges, triangles } = self;

@@ -33,7 +33,7 @@ pub(super) struct Features {
 impl Features {
     /// Adds those of a mesh whose vertices are numbered from `base`. Vertices without a face are left out.
     pub(super) fn add_mesh(&mut self, mesh: &Mesh, base: u32) {
-        let all: Vec<[u32; 3]> = triangles(mesh).collect();
+        let all: Vec<[u32; 3]> = mesh.triangles().collect();
         self.add_triangles(&all, mesh.vertex_count(), base);
     }
 
@@ -84,14 +84,6 @@ impl Features {
         self.points.extend(points);
         self.edges.push(Edge { points, owned: 0b11, apexes: [NONE; 2] });
     }
-}
-
-/// The faces of a mesh as fans around their first corners.
-pub(super) fn triangles(mesh: &Mesh) -> impl Iterator<Item = [u32; 3]> {
-    mesh.faces().flat_map(|corners| {
-        let first = corners[0];
-        corners[1..].windows(2).map(move |pair| [first, pair[0], pair[1]])
-    })
 }
 
 /// A hierarchy of boxes over each kind of feature.

@@ -36,12 +36,13 @@ mod tests;
 
 use crate::cloth::{Cloth, placed};
 use crate::contact::Contacts;
+use crate::fabric::Fabrics;
 use crate::force::AirScratch;
 use crate::interrupter::Interrupter;
 use crate::linear::{BlockJacobi, ConjugateGradient, Solved, Stop};
 use crate::settings::LinearSolver;
 use crate::state::{Coordinates, State};
-use crate::system::{Motion, Rate, System};
+use crate::system::{Motion, Observed, Rate, System};
 use hessian::Hessian;
 use history::Formula;
 pub(crate) use history::Memory;
@@ -103,7 +104,7 @@ pub(crate) struct Implicit {
     reached: Coordinates,
     /// Zeros.
     still: State,
-    air: AirScratch,
+    observed: Observed,
     interrupter: Interrupter,
     /// Iterations since they were last counted.
     pub(crate) iterations: u32,
@@ -125,10 +126,10 @@ impl Implicit {
         Self {
             rule,
             memory: Memory::new(state, taut.edge_count()),
-            preconditioner: Preconditioner::new(cloths, linear_solver),
+            preconditioner: Preconditioner::new(cloths, &system.fabrics, linear_solver),
             blocks: BlockJacobi::new(count),
             scratch: Scratch::new(count),
-            hessian: Hessian::new(&system.layout, count),
+            hessian: Hessian::new(system, count),
             pulling: pull::Scratch::new(count, taut.edge_count()),
             taut,
             pieces: Pieces::new(count, springs),
@@ -138,7 +139,7 @@ impl Implicit {
             residual: State::zeros(count),
             reached: State::zeros(count).position,
             still: State::zeros(count),
-            air: AirScratch::default(),
+            observed: Observed::default(),
             interrupter: interrupter.clone(),
             iterations: 0,
         }
@@ -161,8 +162,8 @@ impl Implicit {
     }
 
     /// Takes the present stiffness of the cloths' springs.
-    pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth]) {
-        self.preconditioner.follow_stiffness(cloths);
+    pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth], fabrics: &Fabrics) {
+        self.preconditioner.follow_stiffness(cloths, fabrics);
     }
 
     /// Moves `state` by one step of h seconds, among contacts that were told of the step.
@@ -291,12 +292,22 @@ impl Implicit {
     /// Takes the residual and the tangents at the present guess.
     fn linearize(&mut self, system: &System, contacts: &mut Contacts, h: f64, whole: f64) {
         let Self {
-            base, at, residual, still, air, hessian, blocks, taut, gradients, memory, ..
+            base,
+            at,
+            residual,
+            still,
+            observed,
+            hessian,
+            blocks,
+            taut,
+            gradients,
+            memory,
+            ..
         } = self;
         let by_square = 1.0 / (h * h);
         let System { masses, inverse_masses, .. } = system;
         let from_rest = Motion { from: still, kick: 1.0, drift: 0.0, rate: Rate::New, stage: 1.0 };
-        system.advance(at, residual, air, from_rest);
+        system.advance(at, residual, observed, from_rest);
         for axis in 0..3 {
             let accelerations = residual.velocity.0[axis].iter();
             let out = residual.position.0[axis].iter_mut().zip(accelerations);
@@ -311,38 +322,39 @@ impl Implicit {
         contacts.push(&at.position, &mut residual.position, whole);
         gradients.take_residual(&residual.position);
         for (i, inertia) in hessian.inertia.iter_mut().enumerate() {
-            *inertia = self::inertia(system, air, i, h) as f32;
+            *inertia = self::inertia(system, &observed.air, i, h) as f32;
         }
         for (particle, tangent) in system.goals.tangents(h) {
             if !system.is_pinned(particle) {
                 hessian.inertia[particle] += tangent as f32;
             }
         }
-        hessian.freeze(&system.layout, &at.position, h);
+        hessian.freeze(system, observed, &at.position, h);
         hessian.tauten(taut.pulling());
-        hessian.invert_blocks(&system.layout, &contacts.matrix, blocks);
+        hessian.invert_blocks(system, &contacts.matrix, blocks);
         contacts.matrix.weigh(&hessian.inertia);
     }
 
     /// Solves for the move from the present guess.
     fn solve(&mut self, system: &System, contacts: &Contacts, h: f64) -> Solved {
-        let Self { preconditioner, hessian, blocks, scratch, gradients, air, .. } = self;
-        let matrix = &hessian.without_bends(&system.layout, &contacts.matrix);
+        let Self { preconditioner, hessian, blocks, scratch, gradients, observed, .. } = self;
+        let matrix = &hessian.without_bends(system, &contacts.matrix);
         let inverse = preconditioner.inverse(system, h);
-        let operator = hessian.on(&system.layout, &contacts.matrix);
+        let operator = hessian.on(system, &contacts.matrix);
         let contacts = &contacts.matrix;
-        let smoothed = &mut Smoothed { matrix, contacts, blocks, inverse, scratch };
+        let largest = hessian.largest();
+        let smoothed = &mut Smoothed { matrix, contacts, blocks, inverse, largest, scratch };
         if system.air.pressures.is_empty() {
             return gradients.solve(&operator, smoothed, STOP);
         }
-        gradients.solve(&Inflated::new(operator, system, air), smoothed, STOP)
+        gradients.solve(&Inflated::new(operator, system, &observed.air), smoothed, STOP)
     }
 
     /// Moves the guess by the solution.
     fn correct(&mut self, system: &System, contacts: &Contacts, h: f64) {
         let solution = &self.gradients.solution;
         self.taut.follow(solution, &mut self.memory.tensions);
-        let inertia = |particle: usize| inertia(system, &self.air, particle, h);
+        let inertia = |particle: usize| inertia(system, &self.observed.air, particle, h);
         let residual = &self.residual.position;
         let shifts = self.pieces.shifts(residual, solution, inertia, &contacts.matrix);
         for axis in 0..3 {

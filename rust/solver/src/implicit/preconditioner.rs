@@ -3,6 +3,7 @@
 use boucle_geometry::Vector;
 
 use crate::cloth::{Cloth, placed};
+use crate::fabric::Fabrics;
 use crate::linear::{Forward, Graph, Inverse, Laplacian, Ldlt, Multigrid};
 use crate::material::SpringKind;
 use crate::settings::LinearSolver;
@@ -44,15 +45,15 @@ pub(super) struct Preconditioner {
 }
 
 impl Preconditioner {
-    pub(super) fn new(cloths: &[Cloth], choice: LinearSolver) -> Self {
-        let (mut pairs, mut springs, mut positions) = (Vec::new(), Vec::new(), Vec::new());
+    pub(super) fn new(cloths: &[Cloth], fabrics: &Fabrics, choice: LinearSolver) -> Self {
+        let (mut pairs, mut positions) = (Vec::new(), Vec::new());
         for (cloth, base) in placed(cloths) {
             positions.extend_from_slice(&cloth.positions);
             for spring in cloth.springs.iter().filter(|spring| spring.kind != SpringKind::Bend) {
                 pairs.push(spring.ends.map(|end| base + end));
-                springs.push([spring.stiffness, spring.damping]);
             }
         }
+        let springs = weights(&pairs, cloths, fabrics);
         let graph = Graph::new(positions.len(), &pairs);
         Self {
             graph,
@@ -101,12 +102,8 @@ impl Preconditioner {
     }
 
     /// Takes the present stiffness of the cloths' springs.
-    pub(super) fn follow_stiffness(&mut self, cloths: &[Cloth]) {
-        let springs = cloths.iter().flat_map(|cloth| &cloth.springs);
-        let inner = springs.filter(|spring| spring.kind != SpringKind::Bend);
-        for (own, spring) in self.springs.iter_mut().zip(inner) {
-            *own = [spring.stiffness, spring.damping];
-        }
+    pub(super) fn follow_stiffness(&mut self, cloths: &[Cloth], fabrics: &Fabrics) {
+        self.springs = weights(&self.pairs, cloths, fabrics);
         self.forget();
     }
 
@@ -128,4 +125,18 @@ impl Preconditioner {
             system.is_pinned(particle)
         })
     }
+}
+
+/// Stiffness (N/m) and damping (N·s/m) of each pair: those of its spring and of the triangles beside it.
+fn weights(pairs: &[[u32; 2]], cloths: &[Cloth], fabrics: &Fabrics) -> Vec<[f64; 2]> {
+    let springs = cloths.iter().flat_map(|cloth| &cloth.springs);
+    let springs = springs.filter(|spring| spring.kind != SpringKind::Bend);
+    let of_triangles = fabrics.weights();
+    let weights = springs.zip(pairs).map(|(spring, &[a, b])| {
+        let pair = [a.min(b), a.max(b)];
+        let place = of_triangles.binary_search_by_key(&pair, |(pair, _)| *pair);
+        let [stiffness, damping] = place.map_or([0.0; 2], |place| of_triangles[place].1);
+        [spring.stiffness + stiffness, spring.damping + damping]
+    });
+    weights.collect()
 }

@@ -19,7 +19,7 @@
 //! step in the place of two they take a third more.
 
 use crate::contact::ContactMatrix;
-use crate::linear::{BlockJacobi, Field, Inverse, LARGEST, chebyshev};
+use crate::linear::{BlockJacobi, Field, Inverse, chebyshev};
 
 use super::hessian::Product;
 
@@ -49,15 +49,18 @@ pub(super) struct Smoothed<'a> {
     pub(super) contacts: &'a ContactMatrix,
     pub(super) blocks: &'a BlockJacobi,
     pub(super) inverse: &'a mut dyn Inverse,
+    /// Bound of the eigenvalues of the matrix times the inverse of its blocks.
+    pub(super) largest: f32,
     pub(super) scratch: &'a mut Scratch,
 }
 
 impl Inverse for Smoothed<'_> {
     fn apply_inverse(&mut self, r: &Field, z: &mut Field) {
-        let Self { matrix, contacts, blocks, inverse, scratch: Scratch { left, step } } = self;
+        let Self { matrix, contacts, blocks, inverse, largest, scratch } = self;
+        let (Scratch { left, step }, largest) = (&mut **scratch, *largest);
         left.copy_from(r);
         z.fill(0.0);
-        let smooth = || chebyshev::steps(SMOOTHED * LARGEST, LARGEST).take(STEPS);
+        let smooth = || chebyshev::steps(SMOOTHED * largest, largest).take(STEPS);
         for factors in smooth() {
             blocks.relax(factors, left, step, z);
             matrix.subtract(step, left);

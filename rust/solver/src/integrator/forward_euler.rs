@@ -16,7 +16,7 @@ pub(super) struct ForwardEuler;
 
 impl Integrator for ForwardEuler {
     fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64) {
-        system.advance(state, &mut scratch.next, &mut scratch.air, euler(state, h, 0.0));
+        system.advance(state, &mut scratch.next, &mut scratch.observed, euler(state, h, 0.0));
         std::mem::swap(state, &mut scratch.next);
     }
 

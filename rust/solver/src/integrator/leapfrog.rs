@@ -24,7 +24,7 @@ impl Integrator for Leapfrog {
             }
         }
         let motion = Motion { from: &*state, kick: h, drift: 0.5 * h, rate: Rate::New, stage: 0.5 };
-        system.advance(state, &mut scratch.next, &mut scratch.air, motion);
+        system.advance(state, &mut scratch.next, &mut scratch.observed, motion);
         std::mem::swap(state, &mut scratch.next);
     }
 

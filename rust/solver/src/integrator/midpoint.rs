@@ -17,8 +17,8 @@ pub(super) struct Midpoint;
 impl Integrator for Midpoint {
     fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64) {
         let [half_way, ..] = &mut scratch.stages;
-        system.advance(state, half_way, &mut scratch.air, euler(state, 0.5 * h, 0.0));
-        system.advance(half_way, &mut scratch.next, &mut scratch.air, euler(state, h, 0.5));
+        system.advance(state, half_way, &mut scratch.observed, euler(state, 0.5 * h, 0.0));
+        system.advance(half_way, &mut scratch.next, &mut scratch.observed, euler(state, h, 0.5));
         std::mem::swap(state, &mut scratch.next);
     }
 

@@ -12,17 +12,16 @@ mod verlet;
 
 use nalgebra::Matrix2;
 
-use crate::force::AirScratch;
 use crate::settings::IntegratorKind;
 use crate::state::State;
-use crate::system::{Motion, Rate, System};
+use crate::system::{Motion, Observed, Rate, System};
 
 /// States that an integrator passes through within a step, kept to save allocations.
 #[derive(Debug)]
 pub(crate) struct Scratch {
     pub(crate) stages: [State; 3],
     pub(crate) next: State,
-    pub(crate) air: AirScratch,
+    pub(crate) observed: Observed,
 }
 
 impl Scratch {
@@ -30,7 +29,7 @@ impl Scratch {
         Self {
             stages: std::array::from_fn(|_| state.clone()),
             next: state.clone(),
-            air: AirScratch::default(),
+            observed: Observed::default(),
         }
     }
 }

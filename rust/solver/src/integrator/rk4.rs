@@ -22,11 +22,11 @@ impl Integrator for Rk4 {
     fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64) {
         let [s1, s2, s3] = &mut scratch.stages;
         let s = &*state;
-        system.advance(s, s1, &mut scratch.air, euler(s, 0.5 * h, 0.0));
-        system.advance(s1, s2, &mut scratch.air, euler(s, 0.5 * h, 0.5));
-        system.advance(s2, s3, &mut scratch.air, euler(s, h, 0.5));
+        system.advance(s, s1, &mut scratch.observed, euler(s, 0.5 * h, 0.0));
+        system.advance(s1, s2, &mut scratch.observed, euler(s, 0.5 * h, 0.5));
+        system.advance(s2, s3, &mut scratch.observed, euler(s, h, 0.5));
         mean(s, s1, s2, s3);
-        system.advance(s3, &mut scratch.next, &mut scratch.air, euler(s1, h / 6.0, 1.0));
+        system.advance(s3, &mut scratch.next, &mut scratch.observed, euler(s1, h / 6.0, 1.0));
         std::mem::swap(state, &mut scratch.next);
     }
 

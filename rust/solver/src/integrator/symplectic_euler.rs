@@ -17,7 +17,7 @@ pub(super) struct SymplecticEuler;
 impl Integrator for SymplecticEuler {
     fn step(&self, system: &System, state: &mut State, scratch: &mut Scratch, h: f64) {
         let motion = Motion { from: &*state, kick: h, drift: h, rate: Rate::New, stage: 0.0 };
-        system.advance(state, &mut scratch.next, &mut scratch.air, motion);
+        system.advance(state, &mut scratch.next, &mut scratch.observed, motion);
         std::mem::swap(state, &mut scratch.next);
     }
 

@@ -23,10 +23,10 @@ impl Integrator for Verlet {
         let [drifted, ..] = &mut scratch.stages;
         let kick_and_drift =
             Motion { from: &*state, kick: 0.5 * h, drift: h, rate: Rate::New, stage: 0.0 };
-        system.advance(state, drifted, &mut scratch.air, kick_and_drift);
+        system.advance(state, drifted, &mut scratch.observed, kick_and_drift);
         let kick =
             Motion { from: &*drifted, kick: 0.5 * h, drift: 0.0, rate: Rate::New, stage: 1.0 };
-        system.advance(drifted, state, &mut scratch.air, kick);
+        system.advance(drifted, state, &mut scratch.observed, kick);
     }
 
     fn amplification(&self, w_squared: f64, c: f64, h: f64) -> Matrix2<f64> {

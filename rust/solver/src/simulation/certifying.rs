@@ -19,11 +19,14 @@ impl Simulation {
         let goals = &self.system.goals;
         let of_goals: f64 =
             cloths.clone().map(|cloth| goals.energy(self.particles(cloth), &self.state)).sum();
+        let fabrics = &self.system.fabrics;
+        let of_fabrics: f64 =
+            cloths.clone().map(|cloth| fabrics.energy(&self.particles(cloth), &self.state)).sum();
         let cloths = self.cloths[cloths.clone()].iter().zip(self.bases[cloths].iter().copied());
         let certificate =
             certify(cloths, &self.state, &self.settings.gravity, self.frame, self.substeps_taken);
         Certificate {
-            potential_energy: certificate.potential_energy + of_pressure + of_goals,
+            potential_energy: certificate.potential_energy + of_pressure + of_goals + of_fabrics,
             iterations: self.iterations_taken,
             intersections: self.intersections,
             clipped: self.clipped,

@@ -8,6 +8,7 @@ use crate::goals::Goals;
 use crate::grab::Grab;
 use crate::material::{at_least_zero, within_one};
 use crate::stability::Spectrum;
+use crate::system::System;
 
 impl Simulation {
     /// Where the pins of a cloth are to be at the end of the next frame (m): a position for each vertex, of which
@@ -141,6 +142,8 @@ impl Simulation {
 
     /// Rebuilds what depends on which particles are held.
     pub(super) fn follow_pins(&mut self) {
+        let System { fabrics, inverse_masses, .. } = &mut self.system;
+        fabrics.follow_pins(|particle| inverse_masses[particle] == 0.0);
         self.method.follow_pins(&self.system);
         self.contacts.follow_pins(&self.system.inverse_masses);
         self.limits = (0..self.cloths.len()).filter_map(|cloth| self.limit_of(cloth)).collect();

@@ -120,7 +120,7 @@ impl Simulation {
     }
 
     pub(super) fn follow_welds(&mut self) {
-        self.method.follow_stiffness(&self.cloths);
+        self.method.follow_stiffness(&self.cloths, &self.system.fabrics);
         self.follow_pins();
     }
 

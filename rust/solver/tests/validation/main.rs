@@ -13,6 +13,7 @@ mod contact_things;
 mod determinism;
 mod drag;
 mod dynamics;
+mod fabric;
 mod fields;
 mod forces;
 mod frame_ends;

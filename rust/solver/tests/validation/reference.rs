@@ -9,6 +9,9 @@ pub(crate) const LATTICES: &str = include_str!("reference/lattice_stability.csv"
 /// Natural frequencies of hanging chains, from dense matrices.
 pub(crate) const CHAINS: &str = include_str!("reference/hanging_chain_modes.csv");
 
+/// Droop of a cantilever under its weight, from the boundary value problem of the elastica.
+pub(crate) const ELASTICA: &str = include_str!("reference/heavy_elastica_cantilever.csv");
+
 /// A table with named columns.
 pub(crate) struct Table {
     names: Vec<&'static str>,

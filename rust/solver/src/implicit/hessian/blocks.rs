@@ -6,20 +6,25 @@ use pulp::{Simd, WithSimd};
 
 use super::Hessian;
 use crate::contact::ContactMatrix;
+use crate::fabric::FabricProduct;
 use crate::kernel::{CHUNK, Layout};
 use crate::linear::{BlockJacobi, Entries};
+use crate::system::System;
 
 impl Hessian {
     /// Inverts the blocks on the diagonal.
     pub(in crate::implicit) fn invert_blocks(
         &self,
-        layout: &Layout,
+        system: &System,
         contacts: &ContactMatrix,
         inverse: &mut BlockJacobi,
     ) {
+        let layout = &system.layout;
+        let fabric = FabricProduct { fabrics: &system.fabrics, tangent: &self.fabric };
         inverse.invert(&self.inertia, |first, mut blocks| {
             let entries = blocks.each_mut().map(|entries| &mut **entries);
             self.arch.dispatch(Blocks { hessian: self, layout, first, entries });
+            fabric.add_blocks(first, &mut blocks);
             contacts.add_blocks(first, &mut blocks);
         });
     }

@@ -13,6 +13,8 @@
 //!
 //! An edge at its limit adds its own alpha and beta to those of its spring ([`super::taut`]).
 //!
+//! Triangles and hinges of fabrics add their own ([`crate::fabric`]).
+//!
 //! Springs lie as [`crate::kernel`] lays them out: diagonals of equal offset, whose ends load as vectors, and the
 //! rest gathered.
 //!
@@ -30,8 +32,11 @@ use rayon::prelude::*;
 
 use super::taut::Pulling;
 use crate::contact::ContactMatrix;
+use crate::fabric::{FabricProduct, Tangent};
 use crate::kernel::{CHUNK, GATHERED, Layout, Place};
+use crate::linear::LARGEST;
 use crate::state::Coordinates;
+use crate::system::{Observed, System};
 pub(super) use product::Product;
 use tangent::{Freeze, freeze_slot};
 
@@ -49,6 +54,9 @@ impl Tangents {
 /// The same of one slot of gathered springs.
 type SlotTangents = [[f32; GATHERED]; 4];
 
+/// Bound of the eigenvalues where triangles are.
+const LARGEST_OF_FABRIC: f32 = 4.0;
+
 /// Slots that one task freezes, at the least.
 const SLOTS: usize = 256;
 
@@ -59,13 +67,15 @@ pub(super) struct Hessian {
     diagonals: Vec<Tangents>,
     /// For each gathered slot of the layout.
     slots: Vec<SlotTangents>,
+    fabric: Tangent,
     /// `m/h'² + ka/h'` (kg/s²); 0 where pinned.
     pub(super) inertia: Vec<f32>,
     arch: Arch,
 }
 
 impl Hessian {
-    pub(super) fn new(layout: &Layout, particle_count: usize) -> Self {
+    pub(super) fn new(system: &System, particle_count: usize) -> Self {
+        let layout = &system.layout;
         let diagonals = layout.diagonals.iter().map(|diagonal| {
             let count = diagonal.rest_lengths.len();
             Tangents(std::array::from_fn(|_| vec![0.0; count]))
@@ -73,13 +83,22 @@ impl Hessian {
         Self {
             diagonals: diagonals.collect(),
             slots: vec![SlotTangents::default(); layout.gather_slots.len()],
+            fabric: Tangent::new(&system.fabrics, particle_count),
             inertia: vec![0.0; particle_count],
             arch: Arch::new(),
         }
     }
 
-    /// Takes the springs' tangents at these positions, for a step h' (s).
-    pub(super) fn freeze(&mut self, layout: &Layout, positions: &Coordinates, h: f64) {
+    /// Takes the tangents at these positions, where forces were observed, for a step h' (s).
+    pub(super) fn freeze(
+        &mut self,
+        system: &System,
+        observed: &Observed,
+        positions: &Coordinates,
+        h: f64,
+    ) {
+        let layout = &system.layout;
+        self.fabric.freeze(&system.fabrics, &observed.fabric, positions, h);
         let arch = self.arch;
         layout.diagonals.par_iter().zip(&mut self.diagonals).for_each(|(diagonal, tangents)| {
             let [x, y, z, beta] = tangents.0.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));
@@ -131,17 +150,25 @@ impl Hessian {
         }
     }
 
-    /// The product with H on the springs of a layout and on contacts.
-    pub(super) fn on<'a>(&'a self, layout: &'a Layout, contacts: &'a ContactMatrix) -> Product<'a> {
-        Product { hessian: self, layout, contacts, has_bends: true }
+    /// The product with H in a system, and on contacts.
+    pub(super) fn on<'a>(&'a self, system: &'a System, contacts: &'a ContactMatrix) -> Product<'a> {
+        let fabric = FabricProduct { fabrics: &system.fabrics, tangent: &self.fabric };
+        Product { hessian: self, layout: &system.layout, fabric, contacts, has_bends: true }
     }
 
-    /// The same without bend springs: what smoothing works with. They are soft, and a third of the work.
+    /// The same without bend springs, which are soft and a third of the work, and with hinges that do not know of each other:
+    /// what smoothing works with.
     pub(super) fn without_bends<'a>(
         &'a self,
-        layout: &'a Layout,
+        system: &'a System,
         contacts: &'a ContactMatrix,
     ) -> Product<'a> {
-        Product { hessian: self, layout, contacts, has_bends: false }
+        Product { has_bends: false, ..self.on(system, contacts) }
+    }
+
+    /// No eigenvalue of what smoothing works with, times the inverse of its blocks, is above this: a triangle's part is at
+    /// most three times its part of the blocks, a hinge's four times.
+    pub(super) fn largest(&self) -> f32 {
+        if self.fabric.is_empty() { LARGEST } else { LARGEST_OF_FABRIC }
     }
 }

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::Hessian;
 use super::diagonal::Springs;
 use crate::contact::ContactMatrix;
+use crate::fabric::{FabricProduct, Moments};
 use crate::kernel::{CHUNK, GATHERED, Layout};
 use crate::linear::{Field, Operator};
 
@@ -13,6 +14,7 @@ use crate::linear::{Field, Operator};
 pub(in crate::implicit) struct Product<'a> {
     pub(super) hessian: &'a Hessian,
     pub(super) layout: &'a Layout,
+    pub(super) fabric: FabricProduct<'a>,
     pub(super) contacts: &'a ContactMatrix,
     pub(super) has_bends: bool,
 }
@@ -25,8 +27,16 @@ impl Product<'_> {
 
     fn each_chunk<const SUBTRACT: bool>(&self, p: &Field, out: &mut Field) {
         let arch = self.hessian.arch;
+        let moments = (!self.fabric.is_empty()).then(|| self.fabric.bend(p, self.has_bends));
+        let moments = moments.as_ref();
         out.chunks_mut().enumerate().for_each(|(chunk, out)| {
-            arch.dispatch(Rows::<SUBTRACT> { product: self, p, first: chunk * CHUNK, out });
+            arch.dispatch(Rows::<SUBTRACT> {
+                product: self,
+                moments,
+                p,
+                first: chunk * CHUNK,
+                out,
+            });
         });
         self.contacts.add::<SUBTRACT>(p, out);
     }
@@ -41,6 +51,8 @@ impl Operator for Product<'_> {
 /// The rows of one chunk of particles.
 struct Rows<'a, const SUBTRACT: bool> {
     product: &'a Product<'a>,
+    /// Of hinges, if they count.
+    moments: Option<&'a Moments<'a>>,
     p: &'a Field,
     first: usize,
     out: [&'a mut [f32]; 3],
@@ -51,8 +63,8 @@ impl<const SUBTRACT: bool> WithSimd for Rows<'_, SUBTRACT> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { product, p, first, mut out } = self;
-        let Product { hessian, layout, has_bends, .. } = *product;
+        let Self { product, moments, p, first, mut out } = self;
+        let Product { hessian, layout, fabric, has_bends, .. } = *product;
         if !SUBTRACT {
             for axis in &mut out {
                 axis.fill(0.0);
@@ -90,6 +102,12 @@ impl<const SUBTRACT: bool> WithSimd for Rows<'_, SUBTRACT> {
                     out[axis][gather.particles[i] as usize - first] += sum;
                 }
             }
+        }
+        if !fabric.is_empty() {
+            fabric.add_membrane::<SUBTRACT>(p, first, &mut out);
+        }
+        if let Some(moments) = moments {
+            fabric.add_bending::<SUBTRACT>(moments, first, &mut out);
         }
         let inertia = &hessian.inertia[own.clone()];
         for (out, p) in out.into_iter().zip(&p.0) {

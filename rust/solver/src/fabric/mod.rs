@@ -1,0 +1,259 @@
+//! Cloth as a continuum: triangles that resist strain, hinges between them that resist bending.
+//!
+//! Forces are evaluated in f64, triangle by triangle and hinge by hinge, and each chunk of particles sums its own in a fixed
+//! order; what reaches over the border of a chunk is computed on both sides.
+
+mod compliance;
+mod coupling;
+mod elements;
+mod hinge;
+mod material;
+mod membrane;
+mod tangent;
+#[cfg(test)]
+mod tests;
+
+pub(crate) use elements::edges;
+pub use material::{Fabric, Warp};
+pub(crate) use tangent::{FabricProduct, Moments, Tangent};
+
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
+
+use boucle_geometry::Vector;
+use rayon::prelude::*;
+
+use crate::cloth::{Cloth, placed};
+use crate::grouped::Grouped;
+use crate::kernel::{CHUNK, ChunkVectors};
+use crate::state::State;
+use compliance::{Compliance, Face};
+use elements::{Elements, Hinge};
+use membrane::{MembraneLaw, Triangle};
+
+/// The wavelength (m) at which damping ratios hold.
+const DAMPED_WAVELENGTH: f64 = 0.1;
+
+/// Hinges that one task handles at the least.
+const TASK: usize = 1024;
+
+/// All fabrics among the cloths.
+#[derive(Debug, Default)]
+pub(crate) struct Fabrics {
+    laws: Vec<MembraneLaw>,
+    /// For each law, the time (s) by which the bending stiffness is multiplied to damp.
+    bend_times: Vec<f64>,
+    triangles: Vec<Triangle>,
+    /// In the order of the triangles.
+    faces: Vec<Face>,
+    hinges: Vec<Hinge>,
+    /// Gradients (1/m) of the hinges' angles at rest.
+    rest_gradients: Vec<[Vector; 4]>,
+    compliance: Compliance,
+    /// For each chunk of particles, the triangles and hinges that reach into it.
+    triangles_of: Option<Grouped<u32>>,
+    hinges_of: Option<Grouped<u32>>,
+}
+
+/// What hinges do in one state.
+#[derive(Debug, Default)]
+pub(crate) struct FabricScratch {
+    gradients: Vec<[Vector; 4]>,
+    angles: Vec<f64>,
+    moments: Vec<f64>,
+    steps: compliance::Scratch<f64>,
+}
+
+impl Fabrics {
+    pub(crate) fn new(cloths: &[Cloth]) -> Self {
+        let mut fabrics = Self::default();
+        let mut elements = Elements::default();
+        for (cloth, base) in placed(cloths) {
+            let Some(fabric) = &cloth.fabric else { continue };
+            let law = fabrics.laws.len() as u32;
+            let first = elements.triangles.len();
+            elements.add(&cloth.mesh, cloth.rest_positions(), fabric, base, law);
+            let area: f64 = elements.triangles[first..].iter().map(|one| one.area).sum();
+            let density = cloth.masses.iter().sum::<f64>() / area;
+            let [stretch, shear, bend] = damping_times(fabric, density);
+            fabrics.laws.push(MembraneLaw::new(fabric, [stretch, shear]));
+            fabrics.bend_times.push(bend);
+        }
+        let count: usize = cloths.iter().map(|cloth| cloth.positions.len()).sum();
+        let chunks = count.div_ceil(CHUNK);
+        let rest: Vec<Vector> =
+            cloths.iter().flat_map(|cloth| cloth.rest_positions().iter().copied()).collect();
+        let Elements { triangles, faces, hinges } = elements;
+        let rest_gradients = hinges
+            .iter()
+            .map(|one| hinge::gradient(one.corners.map(|corner| rest[corner as usize])));
+        fabrics.rest_gradients = rest_gradients.collect();
+        let reaching = |corners: &[u32], number: usize| {
+            let mut chunks: Vec<u32> = corners.iter().map(|corner| corner / CHUNK as u32).collect();
+            chunks.sort_unstable();
+            chunks.dedup();
+            chunks.into_iter().map(move |chunk| (chunk, number as u32))
+        };
+        let of_triangles = triangles.iter().enumerate();
+        let of_triangles = of_triangles.flat_map(|(i, one)| reaching(&one.corners, i));
+        fabrics.triangles_of = Some(Grouped::new(chunks, of_triangles));
+        let of_hinges = hinges.iter().enumerate();
+        let of_hinges = of_hinges.flat_map(|(i, one)| reaching(&one.corners, i));
+        fabrics.hinges_of = Some(Grouped::new(chunks, of_hinges));
+        let mut fabrics = Self { triangles, faces, hinges, ..fabrics };
+        fabrics.follow_pins(|_| false);
+        fabrics
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// Takes up which particles are pinned: a face between three of them does not bend.
+    pub(crate) fn follow_pins(&mut self, is_pinned: impl Fn(usize) -> bool) {
+        let is_rigid = |face: usize| {
+            self.triangles[face].corners.iter().all(|&corner| is_pinned(corner as usize))
+        };
+        self.compliance = Compliance::new(self.hinges.len(), &self.faces, is_rigid);
+    }
+
+    /// Looks at every hinge in `state`.
+    pub(crate) fn observe(&self, state: &State, scratch: &mut FabricScratch) {
+        let FabricScratch { gradients, angles, moments, steps } = scratch;
+        gradients.resize(self.hinges.len(), [Vector::zeros(); 4]);
+        angles.resize(self.hinges.len(), 0.0);
+        let of_hinges = self.hinges.par_iter().zip(gradients).zip(&mut *angles);
+        of_hinges.with_min_len(TASK).for_each(|((one, gradient), angle)| {
+            let x = one.corners.map(|corner| state.position.get(corner as usize));
+            *gradient = hinge::gradient(x);
+            *angle = elastic_angle(one, x);
+            let time = self.bend_times[one.law as usize];
+            if time > 0.0 {
+                let v = one.corners.map(|corner| state.velocity.get(corner as usize));
+                let rate: f64 = gradient.iter().zip(&v).map(|(g, v)| g.dot(v)).sum();
+                *angle += time * rate;
+            }
+        });
+        self.compliance.moments(angles, moments, steps, |value| value);
+    }
+
+    /// Adds the forces (N) on the particles of a chunk, in a state whose hinges were observed.
+    pub(crate) fn add_forces(
+        &self,
+        chunk: usize,
+        state: &State,
+        scratch: &FabricScratch,
+        forces: &mut ChunkVectors,
+    ) {
+        let first = chunk * CHUNK;
+        let mut add = |corner: u32, force: Vector| {
+            let place = (corner as usize).wrapping_sub(first);
+            if place < CHUNK {
+                for (axis, force) in forces.iter_mut().zip(force.iter()) {
+                    axis[place] += force;
+                }
+            }
+        };
+        for &number in group(self.triangles_of.as_ref(), chunk) {
+            let triangle = &self.triangles[number as usize];
+            let law = &self.laws[triangle.law as usize];
+            let frame = triangle.frame(|corner| state.position.get(corner as usize));
+            let strained = law.strained(frame);
+            let stress = if law.times == [0.0; 2] {
+                strained.stress
+            } else {
+                let rates = triangle.frame(|corner| state.velocity.get(corner as usize));
+                law.damped(&strained, rates)
+            };
+            let [ww, ff, wf] = stress.map(|stress| triangle.area * stress);
+            let [u, v] = frame;
+            let flows = [ww * u + wf * v, wf * u + ff * v];
+            let [dw, df] = triangle.gradients;
+            for i in 0..3 {
+                add(triangle.corners[i], -(dw[i] * flows[0] + df[i] * flows[1]));
+            }
+        }
+        for &number in group(self.hinges_of.as_ref(), chunk) {
+            let number = number as usize;
+            let moment = scratch.moments[number];
+            let corners = self.hinges[number].corners.iter();
+            for (&corner, gradient) in corners.zip(&scratch.gradients[number]) {
+                add(corner, -moment * gradient);
+            }
+        }
+    }
+
+    /// The energy (J) of a cloth whose particles are these.
+    pub(crate) fn energy(&self, particles: &Range<usize>, state: &State) -> f64 {
+        let is_own = |corner: u32| particles.contains(&(corner as usize));
+        let triangles = self.triangles.iter().filter(|one| is_own(one.corners[0]));
+        let of_membrane: f64 = triangles
+            .map(|one| {
+                let frame = one.frame(|corner| state.position.get(corner as usize));
+                one.area * self.laws[one.law as usize].strained(frame).energy
+            })
+            .sum();
+        let angles = self.hinges.iter().map(|one| {
+            elastic_angle(one, one.corners.map(|corner| state.position.get(corner as usize)))
+        });
+        let angles: Vec<f64> = angles.collect();
+        let mut moments = Vec::new();
+        self.compliance.moments(&angles, &mut moments, &mut compliance::Scratch::default(), |x| x);
+        let hinges = self.hinges.iter().zip(angles.iter().zip(&moments));
+        let own = hinges.filter(|(one, _)| is_own(one.corners[0]));
+        of_membrane + own.map(|(_, (angle, moment))| 0.5 * angle * moment).sum::<f64>()
+    }
+
+    /// Bounds of the bending stiffness and damping of any motion by its mass (1/s², 1/s), near the shape at rest.
+    pub(crate) fn bending_bounds(&self, inverse_masses: &[f64]) -> [f64; 2] {
+        let mut rows = vec![[0.0_f64; 2]; inverse_masses.len()];
+        for (number, (one, gradient)) in self.hinges.iter().zip(&self.rest_gradients).enumerate() {
+            let stiffness = self.compliance.stiffest(number);
+            let damping = self.bend_times[one.law as usize] * stiffness;
+            let sum: f64 = gradient.iter().map(|g| g.norm()).sum();
+            for (&corner, gradient) in one.corners.iter().zip(gradient) {
+                let part = gradient.norm() * sum * inverse_masses[corner as usize];
+                let row = &mut rows[corner as usize];
+                *row = [row[0] + part * stiffness, row[1] + part * damping];
+            }
+        }
+        rows.iter().fold([0.0; 2], |most, row| [most[0].max(row[0]), most[1].max(row[1])])
+    }
+
+    /// What each pair of particles weighs in the constant matrix, sorted by pair: stiffness (N/m) and damping (N·s/m).
+    pub(crate) fn weights(&self) -> Vec<([u32; 2], [f64; 2])> {
+        coupling::weights(&self.triangles, &self.laws)
+    }
+}
+
+/// The angle (rad) less that at rest, the shorter way around.
+fn elastic_angle(one: &Hinge, x: [Vector; 4]) -> f64 {
+    let angle = hinge::angle(x) - one.rest_angle;
+    if angle > PI {
+        angle - TAU
+    } else if angle < -PI {
+        angle + TAU
+    } else {
+        angle
+    }
+}
+
+/// The times (s) by which damping of stretch, shear and bend is proportional to their stiffness. A wave of length L has
+/// `w = k sqrt(Y/density)` in the plane and `w = k² sqrt(B/density)` out of it, with `k = 2 pi/L`; of it a time t damps the
+/// part `t w/2`.
+fn damping_times(fabric: &Fabric, density: f64) -> [f64; 3] {
+    let k = TAU / DAMPED_WAVELENGTH;
+    let mean = |both: [f64; 2]| (both[0] * both[1]).sqrt();
+    let speeds = [
+        k * (mean(fabric.stretch) / density).sqrt(),
+        k * (fabric.shear / density).sqrt(),
+        k * k * (mean(fabric.bend) / density).sqrt(),
+    ];
+    let of = |(ratio, w): (f64, f64)| if w > 0.0 { 2.0 * ratio / w } else { 0.0 };
+    let [a, b, c] = fabric.damping_ratio;
+    [(a, speeds[0]), (b, speeds[1]), (c, speeds[2])].map(of)
+}
+
+fn group(groups: Option<&Grouped<u32>>, chunk: usize) -> &[u32] {
+    groups.map_or(&[], |groups| groups.of(chunk))
+}

@@ -1,0 +1,199 @@
+//! The fabric model: cantilevers beside the heavy elastica, conservation, and the same bits on any number of threads.
+
+use boucle_geometry::{Mesh, Vector};
+use boucle_solver::{
+    Cloth, Fabric, IntegratorKind, Limiter, Mass, Settings, Simulation, SpringMaterial, Warp,
+};
+
+use crate::reference::{ELASTICA, Table};
+use crate::sheets::{grid_mesh, grid_positions, run, scattered};
+
+/// A cloth of fabric without a limiter.
+fn of_fabric(mesh: Mesh, positions: Vec<Vector>, mass: &Mass, fabric: Fabric) -> Cloth {
+    let material = SpringMaterial { limiter: Limiter::None, ..SpringMaterial::default() };
+    let made = Cloth::from_mesh("sheet", mesh, positions, mass, material, Vec::new());
+    made.and_then(|cloth| cloth.of_fabric(fabric)).expect("a cloth of fabric")
+}
+
+/// A strip of which the part left of x = 0 is clamped, so many cells long and wide; inner vertices are moved by `jitter`
+/// cells, and one of the diagonals of each quad is an edge, in turns.
+fn strip(free: u32, wide: u32, cell: f64, jitter: f64) -> (Mesh, Vec<Vector>) {
+    let clamped = 2;
+    let columns = free + clamped + 1;
+    let quads = grid_mesh(columns, wide + 1);
+    let triangles: Vec<[u32; 3]> = quads
+        .faces()
+        .enumerate()
+        .flat_map(|(i, q)| {
+            if i % 2 == 0 {
+                [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]
+            } else {
+                [[q[0], q[1], q[3]], [q[1], q[2], q[3]]]
+            }
+        })
+        .collect();
+    let positions: Vec<Vector> = grid_positions(columns, wide + 1, cell)
+        .iter()
+        .enumerate()
+        .map(|(i, x)| {
+            let (c, r) = (i as u32 % columns, i as u32 / columns);
+            let is_inner = c > clamped && c + 1 < columns && r > 0 && r < wide;
+            let shift =
+                |k: usize| if is_inner { jitter * cell * scattered(2 * i + k) } else { 0.0 };
+            x + Vector::new(shift(0) - f64::from(clamped) * cell, shift(1), 0.0)
+        })
+        .collect();
+    (Mesh::from_faces(positions.len(), &triangles).expect("a strip"), positions)
+}
+
+/// How far the tip of a cantilever hangs, as a part of its length, at `gamma = density g L³/B`.
+fn droop(gamma: f64, jitter: f64, warp: Vector) -> f64 {
+    let (length, cells, bend, density) = (0.3, 30, 2e-4, 0.2);
+    let cell = length / f64::from(cells);
+    let (mesh, positions) = strip(cells, 8, cell, jitter);
+    let fabric = Fabric {
+        stretch: [5e3; 2],
+        compression: [5e3; 2],
+        shear: 2.5e3,
+        bend: [bend; 2],
+        damping_ratio: [0.02, 0.02, 0.5],
+        warp: Warp::Along(warp),
+    };
+    let gravity = gamma * bend / (density * length.powi(3));
+    let mut cloth = of_fabric(mesh, positions, &Mass::Density(density), fabric);
+    let rest = cloth.positions.clone();
+    cloth.pins = (0..rest.len() as u32).filter(|&i| rest[i as usize].x < 1e-9).collect();
+    let slowest = 3.516 / length.powi(2) * (bend / density).sqrt();
+    let lightest = cloth.masses.iter().copied().fold(0.0, f64::max);
+    cloth.material.air_damping = 2.0 * slowest * lightest;
+    let settings = Settings {
+        gravity: Vector::new(0.0, 0.0, -gravity),
+        integrator: IntegratorKind::ImplicitEuler,
+        threads: 1,
+        ..Settings::default()
+    };
+    let mut simulation = Simulation::new(vec![cloth], Vec::new(), settings).expect("a simulation");
+    run(&mut simulation, 120);
+    let bent = simulation.positions(0);
+    let tip: Vec<f64> = bent
+        .iter()
+        .zip(&rest)
+        .filter(|(_, rest)| (rest.x - length).abs() < 1e-9)
+        .map(|(x, _)| -x.z / length)
+        .collect();
+    tip.iter().sum::<f64>() / tip.len() as f64
+}
+
+#[test]
+fn a_cantilever_droops_as_the_heavy_elastica_on_any_mesh() {
+    for row in Table::of(ELASTICA).rows() {
+        let (gamma, expected) = (row.number("Gamma"), row.number("H_over_L"));
+        if ![1.0, 10.0, 100.0].contains(&gamma) {
+            continue;
+        }
+        for (jitter, warp, tolerance) in [
+            (0.0, Vector::x(), 0.02),
+            (0.0, Vector::new(1.0, 1.0, 0.0), 0.02),
+            (0.35, Vector::y(), 0.05),
+        ] {
+            let got = droop(gamma, jitter, warp);
+            let error = (got / expected - 1.0).abs();
+            assert!(error < tolerance, "gamma {gamma}, jitter {jitter}: {got}, not {expected}");
+        }
+    }
+}
+
+/// A crumpled, spinning, drifting sheet of fabric without gravity.
+fn tumbling(integrator: IntegratorKind, threads: usize) -> Simulation {
+    let n = 14;
+    let positions = grid_positions(n, n, 0.03);
+    let fabric = Fabric {
+        stretch: [800.0, 500.0],
+        compression: [200.0; 2],
+        shear: 40.0,
+        bend: [1e-4, 5e-5],
+        damping_ratio: [0.0; 3],
+        warp: Warp::Along(Vector::y()),
+    };
+    let cloth = of_fabric(grid_mesh(n, n), positions.clone(), &Mass::Density(0.2), fabric);
+    let settings =
+        Settings { gravity: Vector::zeros(), integrator, threads, ..Settings::default() };
+    let mut simulation = Simulation::new(vec![cloth], Vec::new(), settings).expect("a simulation");
+    let spin = Vector::new(0.7, -0.4, 2.0);
+    let velocities: Vec<Vector> = positions
+        .iter()
+        .enumerate()
+        .map(|(i, x)| spin.cross(x) + Vector::from_fn(|axis, _| 0.3 * scattered(7 * i + axis)))
+        .collect();
+    simulation.set_velocities(0, &velocities);
+    simulation
+}
+
+fn energy(simulation: &Simulation) -> f64 {
+    let certificate = simulation.certificate();
+    certificate.kinetic_energy + certificate.potential_energy
+}
+
+#[test]
+fn the_energy_of_a_free_sheet_of_fabric_never_grows() {
+    for integrator in [IntegratorKind::ImplicitEuler, IntegratorKind::Bdf2] {
+        let mut simulation = tumbling(integrator, 1);
+        let mut last = energy(&simulation);
+        for frame in 0..120 {
+            run(&mut simulation, 1);
+            let now = energy(&simulation);
+            assert!(now <= last * (1.0 + 1e-3), "{integrator:?}, frame {frame}: {last} J, {now} J");
+            last = now;
+        }
+    }
+}
+
+/// Verlet keeps the energy of its undamped motion up to a swing.
+#[test]
+fn explicit_steps_of_fabric_are_stable_and_keep_the_energy() {
+    let mut simulation = tumbling(IntegratorKind::Verlet, 1);
+    let first = energy(&simulation);
+    run(&mut simulation, 24);
+    let part = energy(&simulation) / first;
+    assert!((part - 1.0).abs() < 0.02, "{part}");
+}
+
+#[test]
+fn a_free_sheet_of_fabric_keeps_its_momentum() {
+    let mut simulation = tumbling(IntegratorKind::ImplicitEuler, 1);
+    let momentum = |simulation: &Simulation| {
+        let masses = simulation.cloth(0).masses.clone();
+        let moving = simulation.positions(0).into_iter().zip(simulation.velocities(0));
+        masses.iter().zip(moving).fold([Vector::zeros(); 2], |sum, (m, (x, v))| {
+            [sum[0] + *m * v, sum[1] + *m * x.cross(&v)]
+        })
+    };
+    let size: f64 = simulation
+        .velocities(0)
+        .iter()
+        .zip(&simulation.cloth(0).masses)
+        .map(|(v, m)| m * v.norm())
+        .sum();
+    let [linear, _] = momentum(&simulation);
+    run(&mut simulation, 24);
+    let drift = (momentum(&simulation)[0] - linear).norm() / size;
+    assert!(drift < 1e-10, "{drift:e}");
+}
+
+#[test]
+fn fabric_moves_by_the_same_bits_on_any_number_of_threads() {
+    let hash = |threads: usize| {
+        let n = 60;
+        let positions = grid_positions(n, n, 0.02);
+        let mut cloth =
+            of_fabric(grid_mesh(n, n), positions, &Mass::Density(0.2), Fabric::default());
+        cloth.pins = vec![n * (n - 1), n * n - 1];
+        let settings = Settings { threads, ..Settings::default() };
+        let mut simulation =
+            Simulation::new(vec![cloth], Vec::new(), settings).expect("a simulation");
+        run(&mut simulation, 6);
+        simulation.certificate().hash
+    };
+    let one = hash(1);
+    assert!([2, 3, 4].into_iter().all(|threads| hash(threads) == one));
+}

@@ -145,7 +145,7 @@ def test_meshes_and_cloths_must_pair(sheet):
         ({"density": -1}, r"cloth\.sheet\.density = -1\.0"),
         ({"densty": 1}, 'did you mean "density"'),
         ({"springs": {"deformation_rate": 10}}, "did you mean 0.10"),
-        ({"model": "fabric"}, "not supported yet"),
+        ({"model": "felt"}, 'accepted: "springs", "fabric"'),
     ],
 )
 def test_scenes_are_refused_by_their_key(sheet, cloth, match):

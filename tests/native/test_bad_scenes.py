@@ -167,11 +167,12 @@ SCENES = [
     ("unclosed text", '"flag"\n', '"flag\n', "line 7"),
     ("no value", "fps = 24", "fps =", "line 3"),
     ("not TOML at all", GOOD, "<html>\n<body>hello</body>\n</html>\n", "line 1"),
+    # fabric
+    ("other model", DENSITY, 'density = 0.2\nmodel = "felt"', 'cloth.flag.model = "felt"; accepted: "springs", "fabric"'),
+    ("fabric shear", "[solver]", "[cloth.fabric]\nshear = -100.0\n[solver]", "cloth.flag.fabric.shear (N/m)"),
+    ("fabric preset", "[solver]", '[cloth.fabric]\npreset = "demin"\n[solver]', 'cloth.flag.fabric.preset = "demin"'),
+    ("fabric warp", "[solver]", "[cloth.fabric]\nwarp = [0, 0, 0]\n[solver]", "cloth.flag.fabric.warp = [0, 0, 0]"),
     # for later versions
-    ("later model", DENSITY, 'density = 0.2\nmodel = "fabric"', 'cloth.flag.model = "fabric" is not supported yet'),
-    ("later fabric", "[solver]", "[cloth.fabric]\nshear = 100.0\n[solver]", "cloth.flag.fabric.shear is not supported yet"),
-    ("fabric preset", "[solver]", '[cloth.fabric]\npreset = "denim"\n[solver]', "fabric.preset is not supported yet"),
-    ("later preset", DENSITY, 'density = 0.2\npreset = "denim"', "cloth.flag.preset is not supported yet"),
     ("later tear", "[solver]", "[tear]\nenabled = false\n[solver]", "tear.enabled is not supported yet"),
     *(
         (f"later {kind}", "[solver]", f'[[force]]\nkind = "{kind}"\nstrength = 1\n[solver]',

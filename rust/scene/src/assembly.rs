@@ -1,7 +1,7 @@
 //! From a scene and rest meshes to a simulation whose pins and colliders follow the scene.
 
 use boucle_geometry::{Mesh, Vector};
-use boucle_solver::{Certificate, Cloth, Settings, Simulation, Tailoring};
+use boucle_solver::{Certificate, Cloth, Collision, Settings, Simulation, Tailoring};
 
 use crate::collider::{ColliderTrack, RestCollider};
 use crate::description::{Choice, ClothDescription, FabricDescription, Grid, Model, Scene};
@@ -185,6 +185,12 @@ fn cloth(
         rest.positions.len(),
         &format!("{at}.collision"),
     )?;
+    let friction = description.collision.friction.is_none();
+    let friction = description.named_fabric().filter(|_| friction).map(|preset| preset.friction);
+    let collision = collision.map(|collision| Collision {
+        friction: friction.unwrap_or(collision.friction),
+        ..collision
+    });
     let mass = description.mass();
     let fabric = (description.model == Model::Fabric).then_some(&description.fabric);
     let material =

@@ -20,6 +20,7 @@ pub mod obj;
 mod overrides;
 pub mod pc2;
 mod pins;
+mod preset;
 pub mod report;
 mod samples;
 mod shape;
@@ -31,6 +32,7 @@ pub use collider::RestCollider;
 pub use description::Scene;
 pub use error::{Error, Result};
 pub use grid::PLACES;
+pub use preset::{FabricPreset, fabric_presets};
 pub use samples::Samples;
 
 /// The version of Boucle, as reports name it.

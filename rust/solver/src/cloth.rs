@@ -139,11 +139,6 @@ impl Cloth {
         Ok(Self { springs, fabric: Some(fabric), ..self })
     }
 
-    /// Positions (m) of the shape in which it is at rest.
-    pub(crate) fn rest_positions(&self) -> &[Vector] {
-        self.tailoring.rest_positions.as_deref().unwrap_or(&self.positions)
-    }
-
     /// Refuses a cloth that cannot be simulated.
     ///
     /// # Errors

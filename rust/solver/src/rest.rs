@@ -1,4 +1,4 @@
-//! Rest lengths that change: by shrink, or as a rest shape that moves.
+//! Rest lengths that change, by shrink or as a rest shape that moves, and with the shape the rest angles of hinges.
 //!
 //! A spring between vertices i and j whose rest shape spans L (m) has the rest length
 //!
@@ -14,11 +14,12 @@
 use boucle_geometry::Vector;
 
 use crate::cloth::Cloth;
+use crate::fabric::Fabrics;
 use crate::kernel::{Layout, Place};
 use crate::material::SpringKind;
 use crate::tailoring::CLOSED;
 
-/// The rest lengths (m) of one cloth's springs.
+/// The rest lengths (m) of one cloth's springs, then the rest angles (rad) of its hinges.
 #[derive(Debug)]
 pub(crate) struct Rest {
     /// As the cloth was given.
@@ -31,9 +32,16 @@ pub(crate) struct Rest {
 }
 
 impl Rest {
-    /// Of a cloth as it was given, whose first particle is `base`.
-    pub(crate) fn new(cloth: &Cloth, base: u32, layout: &Layout, particle_count: usize) -> Self {
-        let given: Vec<f64> = cloth.springs.iter().map(|spring| spring.rest_length).collect();
+    /// Of a cloth as it was given, with the rest angles of its hinges, whose first particle is `base`.
+    pub(crate) fn new(
+        cloth: &Cloth,
+        angles: impl Iterator<Item = f64>,
+        base: u32,
+        layout: &Layout,
+        particle_count: usize,
+    ) -> Self {
+        let lengths = cloth.springs.iter().map(|spring| spring.rest_length);
+        let given: Vec<f64> = lengths.chain(angles).collect();
         let places_of = |is_bend: bool| {
             let springs = cloth.springs.iter();
             let chosen = springs.filter(|spring| (spring.kind == SpringKind::Bend) == is_bend);
@@ -48,8 +56,20 @@ impl Rest {
     }
 
     /// Sends rest lengths to those of a rest shape (m) with shrink, the cloth's own shape if none is given, without any if
-    /// empty.
-    pub(crate) fn aim(&mut self, cloth: &Cloth, shape: Option<&[Vector]>, shrink: &[f64]) {
+    /// empty; and rest angles to those of the shape.
+    pub(crate) fn aim(
+        &mut self,
+        cloth: &Cloth,
+        shape: Option<&[Vector]>,
+        angles: impl Iterator<Item = f64>,
+        shrink: &[f64],
+    ) {
+        let (_, given_angles) = self.given.split_at(cloth.springs.len());
+        let (_, to) = self.to.split_at_mut(cloth.springs.len());
+        to.copy_from_slice(given_angles);
+        for (to, angle) in to.iter_mut().zip(angles) {
+            *to = angle;
+        }
         let factor = |end: u32| shrink.get(end as usize).map_or(1.0, |shrink| 1.0 - shrink);
         let springs = cloth.springs.iter().zip(&self.given);
         for (to, (spring, given)) in self.to.iter_mut().zip(springs) {
@@ -85,15 +105,30 @@ impl Rest {
         self.from.copy_from_slice(&self.to);
     }
 
-    /// Gives springs and kernel the rest lengths after a part of the frame.
-    pub(crate) fn put(&self, part: f64, cloth: &mut Cloth, layout: &mut Layout) {
-        let ends = self.from.iter().zip(&self.to).zip(&self.places);
-        for (spring, ((from, to), place)) in cloth.springs.iter_mut().zip(ends) {
-            // What arrives is exactly there.
-            spring.rest_length = if part >= 1.0 { *to } else { from + part * (to - from) };
+    /// Gives springs, kernel and fabrics the rest lengths and angles after a part of the frame.
+    pub(crate) fn put(
+        &self,
+        part: f64,
+        number: usize,
+        cloth: &mut Cloth,
+        layout: &mut Layout,
+        fabrics: &mut Fabrics,
+    ) {
+        // What arrives is exactly there.
+        let between =
+            |(from, to): (&f64, &f64)| if part >= 1.0 { *to } else { from + part * (to - from) };
+        let mut present = self.from.iter().zip(&self.to).map(between);
+        for ((spring, place), present) in
+            cloth.springs.iter_mut().zip(&self.places).zip(&mut present)
+        {
+            spring.rest_length = present;
             if let Some(place) = place {
                 layout.set_rest_length(*place, spring.rest_length);
             }
+        }
+        if cloth.fabric.is_some() {
+            let angles: Vec<f64> = present.collect();
+            fabrics.put_rest(number, &cloth.springs, &angles);
         }
     }
 

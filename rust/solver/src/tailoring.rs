@@ -76,7 +76,10 @@ impl Cloth {
             }
             seams.insert([a.min(b), a.max(b)]);
         }
-        let is_edge = |spring: &&Spring| spring.kind == SpringKind::Stretch;
+        let is_edge = |spring: &&Spring| {
+            let is_side = self.fabric.is_some() && spring.kind == SpringKind::Shear;
+            spring.kind == SpringKind::Stretch || is_side
+        };
         if let Some(edge) = self.springs.iter().filter(is_edge).find(|s| seams.contains(&s.ends)) {
             let [a, b] = edge.ends;
             return refuse(format!(
@@ -85,7 +88,10 @@ impl Cloth {
             ));
         }
         self.springs.retain(|spring| !seams.contains(&spring.ends));
-        let stiffness = self.material.stiffness[0].max(LEAST_STIFFNESS);
+        let stretch = self.fabric.as_ref().map_or(self.material.stiffness[0], |fabric| {
+            0.5 * (fabric.stretch[0] + fabric.stretch[1])
+        });
+        let stiffness = stretch.max(LEAST_STIFFNESS);
         // Half of the cloth on either side, shared out among the seams: the mass that one of them has to stop.
         let mass = 0.25 * self.masses.iter().sum::<f64>() / seams.len().max(1) as f64;
         let damping = 2.0 * (stiffness * mass).sqrt();

@@ -4,7 +4,7 @@ use boucle_geometry::Vector;
 use boucle_solver::{DampingLaw, Limiter, Mass, PinMaterial, SpringMaterial, StiffnessFrom};
 use serde::{Deserialize, Serialize};
 
-use super::choice::{Choice, NotYet};
+use super::choice::Choice;
 use super::collision::ClothCollision;
 use super::fabric::FabricDescription;
 use super::pins::Pins;
@@ -12,6 +12,7 @@ use super::shape::{PressureDescription, SewingDescription, Shrink};
 use super::table;
 use crate::error::{Error, Result};
 use crate::limits;
+use crate::preset::FabricPreset;
 
 /// Areal density (kg/m²) of a cloth that names no mass.
 const DEFAULT_DENSITY: f64 = 0.2;
@@ -74,17 +75,24 @@ pub struct ClothDescription {
     /// `[cloth.fabric]`.
     #[serde(default, deserialize_with = "table::one")]
     pub fabric: FabricDescription,
-    /// A named fabric, for later.
-    pub preset: Option<NotYet>,
 }
 
 impl ClothDescription {
+    /// The fabric that it is named after, if it is of fabric and one is named.
+    #[must_use]
+    pub fn named_fabric(&self) -> Option<&'static FabricPreset> {
+        if self.model == Model::Fabric { self.fabric.named() } else { None }
+    }
+
     /// The mass as the solver takes it.
     #[must_use]
     pub fn mass(&self) -> Mass {
         match (self.density, self.mass_per_vertex) {
             (_, Some(mass)) => Mass::PerVertex(mass),
-            (density, None) => Mass::Density(density.unwrap_or(DEFAULT_DENSITY)),
+            (density, None) => {
+                let of_preset = self.named_fabric().map(|preset| preset.density);
+                Mass::Density(density.or(of_preset).unwrap_or(DEFAULT_DENSITY))
+            }
         }
     }
 

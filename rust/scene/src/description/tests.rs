@@ -118,34 +118,12 @@ fn unknown_keys_are_refused_by_name_with_what_was_perhaps_meant() {
 
 #[test]
 fn keys_of_later_versions_are_refused_by_name() {
-    let fabric = [
-        "stretch_warp",
-        "stretch_weft",
-        "shear",
-        "bend_warp",
-        "bend_weft",
-        "damping_ratio",
-        "deformation_rate",
-    ];
-    for key in fabric {
-        let expected = format!("cloth.flag.fabric.{key} is not supported yet");
-        assert_eq!(refused(&format!("cloth.0.fabric.{key}=1")), expected);
-    }
     for key in ["enabled", "force", "strain"] {
         assert_eq!(refused(&format!("tear.{key}=1")), format!("tear.{key} is not supported yet"));
     }
     assert_eq!(refusal(&format!("[tear]\n{GOOD}")), "tear is not supported yet");
-    assert_eq!(refused("cloth.0.preset=\"denim\""), "cloth.flag.preset is not supported yet");
-    for (change, expected) in [
-        (
-            "cloth.0.model=fabric",
-            "cloth.flag.model = \"fabric\" is not supported yet; accepted: \"springs\"",
-        ),
-        ("force.0.kind=water", "force.0.kind = \"water\" is not supported yet"),
-    ] {
-        let error = refused(change);
-        assert!(error.starts_with(expected), "{error} for {change}");
-    }
+    let error = refused("force.0.kind=water");
+    assert!(error.starts_with("force.0.kind = \"water\" is not supported yet"), "{error}");
     let text = format!("{GOOD}\n[[force]]\nkind = \"water\"\nflow = 3\n");
     assert!(
         refusal(&text).starts_with("force.1.kind = \"water\" is not supported yet; accepted: ")
@@ -593,5 +571,34 @@ fn fields_come_as_json_from_frame_to_frame() {
     ] {
         let error = fields_from_json(text).expect_err(text).to_string();
         assert!(error.starts_with(expected), "{error}");
+    }
+}
+
+#[test]
+fn a_named_fabric_gives_what_the_scene_does_not_say() {
+    let changes = ["model=fabric", "fabric.preset=denim", "fabric.shear=7"];
+    let changes: Vec<String> = changes.iter().map(|change| format!("cloth.0.{change}")).collect();
+    let scene = Scene::from_toml(GOOD, &changes).expect("a good scene");
+    let cloth = &scene.cloth[0];
+    let denim = &crate::fabric_presets()["denim"];
+    let fabric = cloth.fabric.fabric();
+    assert_eq!(fabric.shear, 7.0);
+    assert_eq!(fabric.stretch, [denim.stretch_warp, denim.stretch_weft]);
+    assert_eq!(fabric.compression, fabric.stretch);
+    assert_eq!(cloth.fabric.material().deformation_rate, denim.deformation_rate);
+}
+
+#[test]
+fn fabrics_that_cannot_be_are_refused() {
+    for (change, expected) in [
+        ("cloth.0.fabric.preset=demin", "cloth.flag.fabric.preset = \"demin\""),
+        ("cloth.0.fabric.stretch_warp=-1", "cloth.flag.fabric.stretch_warp (N/m)"),
+        ("cloth.0.fabric.bend_weft=nan", "cloth.flag.fabric.bend_weft (N·m)"),
+        ("cloth.0.fabric.deformation_rate=1", "cloth.flag.fabric.deformation_rate"),
+        ("cloth.0.fabric.limiter=stiffen", "cloth.flag.fabric.limiter = \"stiffen\""),
+        ("cloth.0.fabric.warp=[0,0,0]", "cloth.flag.fabric.warp = [0, 0, 0]"),
+    ] {
+        let error = refused(change);
+        assert!(error.starts_with(expected), "{error} for {change}");
     }
 }

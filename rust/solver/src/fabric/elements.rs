@@ -6,6 +6,7 @@ use super::compliance::Face;
 use super::hinge;
 use super::material::{Fabric, Warp};
 use super::membrane::Triangle;
+use crate::cloth::Cloth;
 use crate::law::Spring;
 use crate::material::SpringKind;
 
@@ -27,31 +28,36 @@ pub(super) struct Hinge {
 pub(super) struct Elements {
     pub(super) triangles: Vec<Triangle>,
     pub(super) faces: Vec<Face>,
+    /// Of each triangle, the springs of its cloth from each corner to the next.
+    pub(super) sides: Vec<[u32; 3]>,
     pub(super) hinges: Vec<Hinge>,
 }
 
 impl Elements {
-    /// Adds those of a mesh at rest (m) whose vertices are numbered from `base`.
-    pub(super) fn add(
-        &mut self,
-        mesh: &Mesh,
-        positions: &[Vector],
-        fabric: &Fabric,
-        base: u32,
-        law: u32,
-    ) {
+    /// Adds those of a cloth whose vertices are numbered from `base`.
+    pub(super) fn add(&mut self, cloth: &Cloth, fabric: &Fabric, base: u32, law: u32) {
+        let (mesh, positions) = (&cloth.mesh, cloth.rest());
         let first = self.triangles.len();
         let mut sides = Vec::new();
+        let mut springs: Vec<([u32; 2], u32)> =
+            (0..).zip(&cloth.springs).map(|(number, spring)| (spring.ends, number)).collect();
+        springs.sort_unstable();
+        let spring_of = |pair: [u32; 2]| {
+            let place = springs.partition_point(|(ends, _)| *ends < pair);
+            springs[place].1
+        };
         for (place, (corners, map)) in mapped_triangles(mesh, &fabric.warp).enumerate() {
             let number = (first + place) as u32;
             let at = corners.map(|corner| positions[corner as usize]);
             let flat = flattened(at, warp_of(at, &fabric.warp, map));
             self.triangles.push(Triangle::new(corners.map(|corner| base + corner), flat, law));
             self.faces.push(Face { flat, hinges: [None; 3], bend: fabric.bend });
-            for i in 0..3 {
+            let pairs = [0, 1, 2].map(|i| {
                 let [a, b] = [corners[i], corners[(i + 1) % 3]];
-                sides.push(([a.min(b), a.max(b)], number, i));
-            }
+                [a.min(b), a.max(b)]
+            });
+            sides.extend((0..3).zip(pairs).map(|(i, pair)| (pair, number, i)));
+            self.sides.push(pairs.map(spring_of));
         }
         sides.sort_unstable();
         for same in sides.chunk_by(|a, b| a.0 == b.0) {

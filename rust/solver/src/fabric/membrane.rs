@@ -108,6 +108,11 @@ impl MembraneLaw {
     }
 }
 
+/// The largest eigenvalue of a symmetric 2 x 2 matrix: xx, yy, xy.
+pub(super) fn largest([xx, yy, xy]: [f64; 3]) -> f64 {
+    0.5 * (xx + yy) + (0.5 * (xx - yy)).hypot(xy)
+}
+
 /// The positive part of a symmetric 2 x 2 matrix: xx, yy, xy.
 pub(super) fn positive_part([xx, yy, xy]: [f64; 3]) -> [f64; 3] {
     let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));

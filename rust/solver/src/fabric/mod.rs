@@ -26,6 +26,7 @@ use rayon::prelude::*;
 use crate::cloth::{Cloth, placed};
 use crate::grouped::Grouped;
 use crate::kernel::{CHUNK, ChunkVectors};
+use crate::law::Spring;
 use crate::state::State;
 use compliance::{Compliance, Face};
 use elements::{Elements, Hinge};
@@ -33,6 +34,9 @@ use membrane::{MembraneLaw, Triangle};
 
 /// The wavelength (m) at which damping ratios hold.
 const DAMPED_WAVELENGTH: f64 = 0.1;
+
+/// The least height of a triangle whose rest lengths are changed, as a part of a side.
+const FLATTEST: f64 = 1e-3;
 
 /// Hinges that one task handles at the least.
 const TASK: usize = 1024;
@@ -46,13 +50,24 @@ pub(crate) struct Fabrics {
     triangles: Vec<Triangle>,
     /// In the order of the triangles.
     faces: Vec<Face>,
+    /// Of each triangle, the springs of its cloth that are its sides.
+    sides: Vec<[u32; 3]>,
     hinges: Vec<Hinge>,
+    /// What belongs to each cloth.
+    parts: Vec<Part>,
     /// Gradients (1/m) of the hinges' angles at rest.
     rest_gradients: Vec<[Vector; 4]>,
     compliance: Compliance,
     /// For each chunk of particles, the triangles and hinges that reach into it.
     triangles_of: Option<Grouped<u32>>,
     hinges_of: Option<Grouped<u32>>,
+}
+
+/// The triangles and hinges of one cloth.
+#[derive(Clone, Debug)]
+struct Part {
+    triangles: Range<usize>,
+    hinges: Range<usize>,
 }
 
 /// What hinges do in one state.
@@ -69,21 +84,29 @@ impl Fabrics {
         let mut fabrics = Self::default();
         let mut elements = Elements::default();
         for (cloth, base) in placed(cloths) {
-            let Some(fabric) = &cloth.fabric else { continue };
-            let law = fabrics.laws.len() as u32;
             let first = elements.triangles.len();
-            elements.add(&cloth.mesh, cloth.rest_positions(), fabric, base, law);
+            let first_hinge = elements.hinges.len();
+            let Some(fabric) = &cloth.fabric else {
+                fabrics
+                    .parts
+                    .push(Part { triangles: first..first, hinges: first_hinge..first_hinge });
+                continue;
+            };
+            let law = fabrics.laws.len() as u32;
+            elements.add(cloth, fabric, base, law);
             let area: f64 = elements.triangles[first..].iter().map(|one| one.area).sum();
             let density = cloth.masses.iter().sum::<f64>() / area;
             let [stretch, shear, bend] = damping_times(fabric, density);
             fabrics.laws.push(MembraneLaw::new(fabric, [stretch, shear]));
             fabrics.bend_times.push(bend);
+            let triangles = first..elements.triangles.len();
+            fabrics.parts.push(Part { triangles, hinges: first_hinge..elements.hinges.len() });
         }
         let count: usize = cloths.iter().map(|cloth| cloth.positions.len()).sum();
         let chunks = count.div_ceil(CHUNK);
         let rest: Vec<Vector> =
-            cloths.iter().flat_map(|cloth| cloth.rest_positions().iter().copied()).collect();
-        let Elements { triangles, faces, hinges } = elements;
+            cloths.iter().flat_map(|cloth| cloth.rest().iter().copied()).collect();
+        let Elements { triangles, faces, sides, hinges } = elements;
         let rest_gradients = hinges
             .iter()
             .map(|one| hinge::gradient(one.corners.map(|corner| rest[corner as usize])));
@@ -100,7 +123,7 @@ impl Fabrics {
         let of_hinges = hinges.iter().enumerate();
         let of_hinges = of_hinges.flat_map(|(i, one)| reaching(&one.corners, i));
         fabrics.hinges_of = Some(Grouped::new(chunks, of_hinges));
-        let mut fabrics = Self { triangles, faces, hinges, ..fabrics };
+        let mut fabrics = Self { triangles, faces, sides, hinges, ..fabrics };
         fabrics.follow_pins(|_| false);
         fabrics
     }
@@ -115,6 +138,43 @@ impl Fabrics {
             self.triangles[face].corners.iter().all(|&corner| is_pinned(corner as usize))
         };
         self.compliance = Compliance::new(self.hinges.len(), &self.faces, is_rigid);
+    }
+
+    /// How many hinges a cloth has.
+    pub(crate) fn hinge_count(&self, cloth: usize) -> usize {
+        self.parts[cloth].hinges.len()
+    }
+
+    /// The angles (rad) that a cloth's hinges have in a shape (m) of its vertices, numbered from `base`.
+    pub(crate) fn angles_in<'a>(
+        &'a self,
+        cloth: usize,
+        base: u32,
+        shape: &'a [Vector],
+    ) -> impl Iterator<Item = f64> + 'a {
+        let hinges = self.hinges[self.parts[cloth].hinges.clone()].iter();
+        hinges
+            .map(move |one| hinge::angle(one.corners.map(|corner| shape[(corner - base) as usize])))
+    }
+
+    /// The angles (rad) at which a cloth's hinges are at rest.
+    pub(crate) fn rest_angles(&self, cloth: usize) -> impl Iterator<Item = f64> {
+        self.hinges[self.parts[cloth].hinges.clone()].iter().map(|one| one.rest_angle)
+    }
+
+    /// Takes the rest lengths (m) of a cloth's springs and the rest angles (rad) of its hinges. Compliance stays that of the
+    /// faces as they were given.
+    pub(crate) fn put_rest(&mut self, cloth: usize, springs: &[Spring], angles: &[f64]) {
+        let Part { triangles, hinges } = self.parts[cloth].clone();
+        for number in triangles {
+            let lengths = self.sides[number].map(|side| springs[side as usize].rest_length);
+            let Triangle { corners, law, .. } = self.triangles[number];
+            let flat = resized(self.faces[number].flat, lengths);
+            self.triangles[number] = Triangle::new(corners, flat, law);
+        }
+        for (one, angle) in self.hinges[hinges].iter_mut().zip(angles) {
+            one.rest_angle = *angle;
+        }
     }
 
     /// Looks at every hinge in `state`.
@@ -183,6 +243,19 @@ impl Fabrics {
         }
     }
 
+    /// The corners of each triangle of a cloth, and its largest stress over a width as that of its sides (N).
+    pub(crate) fn tensions<'a>(
+        &'a self,
+        cloth: usize,
+        state: &'a State,
+    ) -> impl Iterator<Item = ([u32; 3], f64)> + 'a {
+        self.triangles[self.parts[cloth].triangles.clone()].iter().map(|one| {
+            let frame = one.frame(|corner| state.position.get(corner as usize));
+            let stress = self.laws[one.law as usize].strained(frame).stress;
+            (one.corners, membrane::largest(stress) * (2.0 * one.area).sqrt())
+        })
+    }
+
     /// The energy (J) of a cloth whose particles are these.
     pub(crate) fn energy(&self, particles: &Range<usize>, state: &State) -> f64 {
         let is_own = |corner: u32| particles.contains(&(corner as usize));
@@ -224,6 +297,18 @@ impl Fabrics {
     pub(crate) fn weights(&self) -> Vec<([u32; 2], [f64; 2])> {
         coupling::weights(&self.triangles, &self.laws)
     }
+}
+
+/// A triangle in its plane with other lengths (m) of its sides, whose first side keeps its direction. Lengths that make no
+/// triangle make one that is nearly flat.
+fn resized(flat: [[f64; 2]; 3], [ab, bc, ca]: [f64; 3]) -> [[f64; 2]; 3] {
+    let [a, b, _] = flat;
+    let [x, y] = [b[0] - a[0], b[1] - a[1]];
+    let length = x.hypot(y);
+    let [x, y] = [x / length, y / length];
+    let along = (ab * ab + ca * ca - bc * bc) / (2.0 * ab);
+    let across = (ca * ca - along * along).max((FLATTEST * ca).powi(2)).sqrt();
+    [[0.0; 2], [ab * x, ab * y], [along * x - across * y, along * y + across * x]]
 }
 
 /// The angle (rad) less that at rest, the shorter way around.

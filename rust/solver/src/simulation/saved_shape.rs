@@ -1,6 +1,6 @@
 //! What changes a cloth's shape, as numbers of a checkpoint.
 //!
-//! Of each cloth how many rest lengths are aimed at, and those, then how many others the frame begins with, and those; none
+//! Of each cloth how many rest lengths and rest angles are aimed at, and those, then how many others the frame begins with, and those; none
 //! where they are as the cloth was given, or the same. Of each pressure where the frame begins and what is aimed at. Of each
 //! seam 1 if it is welded, else 0.
 
@@ -36,11 +36,18 @@ impl Simulation {
     pub(super) fn read_shape(&self, numbers: &[f64]) -> Option<SavedShape> {
         let mut numbers = Numbers(numbers);
         let mut lengths = Vec::new();
-        for cloth in &self.cloths {
+        for (number, cloth) in self.cloths.iter().enumerate() {
+            let hinge_count = self.system.fabrics.hinge_count(number);
             let [to, from] = [numbers.counted()?, numbers.counted()?];
             let is_length = |length: &f64| *length >= CLOSED && length.is_finite();
             let fits = |own: &[f64]| {
-                own.is_empty() || own.len() == cloth.springs.len() && own.iter().all(is_length)
+                let split = own.split_at_checked(cloth.springs.len());
+                own.is_empty()
+                    || split.is_some_and(|(lengths, angles)| {
+                        angles.len() == hinge_count
+                            && lengths.iter().all(is_length)
+                            && angles.iter().all(|angle| angle.is_finite())
+                    })
             };
             if !fits(to) || !fits(from) {
                 return None;

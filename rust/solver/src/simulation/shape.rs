@@ -35,8 +35,10 @@ impl Simulation {
         check_shrink(&given.name, shrink.unwrap_or(&[]), count)?;
         self.ensure_rest(cloth);
         if let Some(rest) = &mut self.rests[cloth] {
-            let given = &self.cloths[cloth];
-            rest.aim(given, shape, shrink.unwrap_or(&given.tailoring.shrink));
+            let (given, base) = (&self.cloths[cloth], self.bases[cloth]);
+            let angles = shape.map(|shape| self.system.fabrics.angles_in(cloth, base, shape));
+            let angles = angles.into_iter().flatten();
+            rest.aim(given, shape, angles, shrink.unwrap_or(&given.tailoring.shrink));
         }
         Ok(())
     }
@@ -76,7 +78,8 @@ impl Simulation {
         let Self { rests, cloths, bases, system, .. } = self;
         let count = system.particle_count();
         rests[cloth].get_or_insert_with(|| {
-            Box::new(Rest::new(&cloths[cloth], bases[cloth], &system.layout, count))
+            let angles = system.fabrics.rest_angles(cloth);
+            Box::new(Rest::new(&cloths[cloth], angles, bases[cloth], &system.layout, count))
         });
     }
 
@@ -129,7 +132,7 @@ impl Simulation {
         let Self { rests, cloths, bases, system, method, limits, contacts, .. } = self;
         let Some(rest) = &rests[cloth] else { return };
         let (own, base) = (&mut cloths[cloth], bases[cloth]);
-        rest.put(part, own, &mut system.layout);
+        rest.put(part, cloth, own, &mut system.layout, &mut system.fabrics);
         contacts.scale_rest(base, &rest.scales(own));
         method.follow_rest_lengths(own, base);
         for limit in limits {

@@ -1,0 +1,79 @@
+//! The fabrics that scenes may name: `presets/fabrics.toml`, each number with its source.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use serde::{Deserialize, Serialize};
+
+/// The file, as it stands in the program.
+const FILE: &str = include_str!("../presets/fabrics.toml");
+
+/// What is known of one fabric.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FabricPreset {
+    /// What menus call it.
+    pub title: String,
+    /// Areal density (kg/m²).
+    pub density: f64,
+    /// How thick it is (m).
+    pub thickness: f64,
+    /// Tensile stiffness (N/m) along the warp.
+    pub stretch_warp: f64,
+    /// Tensile stiffness (N/m) along the weft.
+    pub stretch_weft: f64,
+    /// Shear stiffness (N/m).
+    pub shear: f64,
+    /// Bending stiffness (N·m) of curvature along the warp.
+    pub bend_warp: f64,
+    /// Bending stiffness (N·m) of curvature along the weft.
+    pub bend_weft: f64,
+    /// Coefficient of friction, cloth on cloth.
+    pub friction: f64,
+    /// Allowed elongation, as a fraction.
+    pub deformation_rate: f64,
+    /// Damping as a part of the critical, at a wavelength of 0.1 m.
+    pub damping_ratio: f64,
+    /// Between what its drape coefficient (%, Cusick) is said to lie, where anybody says so.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drape_coefficient: Option<[f64; 2]>,
+    /// Where the numbers come from.
+    pub source: String,
+}
+
+static PRESETS: LazyLock<BTreeMap<String, FabricPreset>> =
+    LazyLock::new(|| toml::from_str(FILE).unwrap_or_default());
+
+/// All fabrics, by name.
+#[must_use]
+pub fn fabric_presets() -> &'static BTreeMap<String, FabricPreset> {
+    &PRESETS
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_preset_is_a_fabric_with_a_source() {
+        let presets: BTreeMap<String, FabricPreset> = toml::from_str(FILE).expect("presets");
+        assert!(presets.len() >= 24, "{}", presets.len());
+        for (name, preset) in &presets {
+            let fabric = boucle_solver::Fabric {
+                stretch: [preset.stretch_warp, preset.stretch_weft],
+                compression: [preset.stretch_warp, preset.stretch_weft],
+                shear: preset.shear,
+                bend: [preset.bend_warp, preset.bend_weft],
+                damping_ratio: [preset.damping_ratio; 3],
+                ..boucle_solver::Fabric::default()
+            };
+            fabric.check().unwrap_or_else(|error| panic!("{name}: {error}"));
+            let is_cloth = (0.01..2.0).contains(&preset.density)
+                && (5e-5..2e-2).contains(&preset.thickness)
+                && (0.0..2.0).contains(&preset.friction)
+                && (0.0..1.0).contains(&preset.deformation_rate);
+            assert!(is_cloth, "{name}: {preset:?}");
+            assert!(preset.source.len() > 40, "{name} has no source");
+        }
+    }
+}

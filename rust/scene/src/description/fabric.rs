@@ -127,7 +127,7 @@ impl FabricDescription {
         }
         let warp = self.warp.unwrap_or([0.0, 1.0, 0.0]);
         limits::vector(&format!("{at}.warp"), &warp, limits::MAX_LENGTH, "")?;
-        if warp == [0.0; 3] {
+        if Vector::from(warp).norm() <= 0.0 {
             return Err(Error::refuse(&format!("{at}.warp"), "[0, 0, 0]", "a direction"));
         }
         if self.limiter == Limiter::Stiffen {

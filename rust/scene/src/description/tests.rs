@@ -582,10 +582,12 @@ fn a_named_fabric_gives_what_the_scene_does_not_say() {
     let cloth = &scene.cloth[0];
     let denim = &crate::fabric_presets()["denim"];
     let fabric = cloth.fabric.fabric();
-    assert_eq!(fabric.shear, 7.0);
-    assert_eq!(fabric.stretch, [denim.stretch_warp, denim.stretch_weft]);
-    assert_eq!(fabric.compression, fabric.stretch);
-    assert_eq!(cloth.fabric.material().deformation_rate, denim.deformation_rate);
+    let bits = |numbers: &[f64]| numbers.iter().map(|number| number.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&[fabric.shear]), bits(&[7.0]));
+    assert_eq!(bits(&fabric.stretch), bits(&[denim.stretch_warp, denim.stretch_weft]));
+    assert_eq!(bits(&fabric.compression), bits(&fabric.stretch));
+    let rate = cloth.fabric.material().deformation_rate;
+    assert_eq!(bits(&[rate]), bits(&[denim.deformation_rate]));
 }
 
 #[test]

@@ -1,14 +1,14 @@
 //! How faces share the angle of the hinge between them.
 //!
 //! A hinge's angle says nothing about which of its two faces has bent. In Morley's plate element each edge has a normal of its
-//! own, and the angle t_e of a hinge is the sum of what the faces on both sides turn up to it. A face with angles p_e at its
-//! edges, of lengths l_e and normals n_e in its plane, has the curvature
+//! own, and the angle `t_e` of a hinge is the sum of what the faces on both sides turn up to it. A face with angles `p_e` at its
+//! edges, of lengths `l_e` and normals `n_e` in its plane, has the curvature
 //!
 //! ```text
 //! K = sum_e (l_e/A) p_e n_e n_eᵀ         and the energy         A/2 K:D:K = 1/2 pᵀ S⁻¹ p
 //! ```
 //!
-//! The normals of edges settle where both faces press them with the same moment m_e. Then the compliances S of the faces add
+//! The normals of edges settle where both faces press them with the same moment `m_e`. Then the compliances S of the faces add
 //! up, and the moments of all hinges follow from their angles:
 //!
 //! ```text
@@ -124,7 +124,7 @@ impl Compliance {
         let mut entries: Vec<(u32, u32, f64)> = Vec::new();
         let mut bounds = [1.0_f64, 1.0_f64];
         for (number, face) in faces.iter().enumerate() {
-            if is_rigid(number) || face.bend == [0.0; 2] {
+            if is_rigid(number) || face.bend.iter().all(|bend| *bend <= 0.0) {
                 continue;
             }
             let compliance = face.compliance();

@@ -1,6 +1,6 @@
 //! The angle by which two triangles turn at their common edge.
 //!
-//! With the edge e from x_0 to x_1 and the wings x_2, to the left of it as seen from where both normals point, and x_3:
+//! With the edge e from `x_0` to `x_1` and the wings `x_2`, to the left of it as seen from where both normals point, and `x_3`:
 //!
 //! ```text
 //! n_2 = e x (x_2 - x_0)        n_3 = (x_3 - x_0) x e        tan(angle) = (n_2 x n_3)·e/|e| / (n_2·n_3)

@@ -1,7 +1,7 @@
 //! The membrane of a fabric: one triangle, whose strain is the same everywhere in it.
 //!
 //! With the rest triangle in its plane, coordinates w along the warp and f along the weft, and the gradients of its corners'
-//! weights there, the positions x_i span
+//! weights there, the positions `x_i` span
 //!
 //! ```text
 //! U = sum dw_i x_i        V = sum df_i x_i                      (what a metre of warp and of weft has become)
@@ -73,7 +73,7 @@ pub(super) struct Strained {
     pub(super) frame: [Vector; 2],
     /// Present stiffness (N/m) along warp and weft: that of tension or of compression.
     pub(super) stiffness: [f64; 2],
-    /// s_ww, s_ff, s_wf (N/m) without damping.
+    /// `s_ww, s_ff, s_wf` (N/m) without damping.
     pub(super) stress: [f64; 3],
     /// J/m²
     pub(super) energy: f64,
@@ -95,7 +95,7 @@ impl MembraneLaw {
         Strained { frame, stiffness: of, stress, energy }
     }
 
-    /// s_ww, s_ff, s_wf (N/m) with damping, for a frame that changes at `rates` (1/s).
+    /// `s_ww, s_ff, s_wf` (N/m) with damping, for a frame that changes at `rates` (1/s).
     pub(super) fn damped(&self, strained: &Strained, rates: [Vector; 2]) -> [f64; 3] {
         let Strained { frame: [u, v], stiffness, stress, .. } = strained;
         let [du, dv] = rates;

@@ -179,6 +179,9 @@ impl Fabrics {
 
     /// Looks at every hinge in `state`.
     pub(crate) fn observe(&self, state: &State, scratch: &mut FabricScratch) {
+        if self.hinges.is_empty() {
+            return;
+        }
         let FabricScratch { gradients, angles, moments, steps } = scratch;
         gradients.resize(self.hinges.len(), [Vector::zeros(); 4]);
         angles.resize(self.hinges.len(), 0.0);
@@ -219,7 +222,7 @@ impl Fabrics {
             let law = &self.laws[triangle.law as usize];
             let frame = triangle.frame(|corner| state.position.get(corner as usize));
             let strained = law.strained(frame);
-            let stress = if law.times == [0.0; 2] {
+            let stress = if law.times.iter().all(|time| *time <= 0.0) {
                 strained.stress
             } else {
                 let rates = triangle.frame(|corner| state.velocity.get(corner as usize));
@@ -283,7 +286,7 @@ impl Fabrics {
         for (number, (one, gradient)) in self.hinges.iter().zip(&self.rest_gradients).enumerate() {
             let stiffness = self.compliance.stiffest(number);
             let damping = self.bend_times[one.law as usize] * stiffness;
-            let sum: f64 = gradient.iter().map(|g| g.norm()).sum();
+            let sum: f64 = gradient.iter().map(Vector::norm).sum();
             for (&corner, gradient) in one.corners.iter().zip(gradient) {
                 let part = gradient.norm() * sum * inverse_masses[corner as usize];
                 let row = &mut rows[corner as usize];

@@ -138,8 +138,8 @@ impl<'a> FabricProduct<'a> {
         hinges.with_min_len(TASK).for_each(|((hinge, gradients), angle)| {
             let mut sum = 0.0;
             for (&corner, gradient) in hinge.corners.iter().zip(gradients) {
-                for axis in 0..3 {
-                    sum += gradient[axis] * p.0[axis][corner as usize];
+                for (gradient, p) in gradient.iter().zip(&p.0) {
+                    sum += gradient * p[corner as usize];
                 }
             }
             *angle = tangent.damped[hinge.law as usize] * sum;

@@ -171,7 +171,7 @@ fn a_pulled_sheet_resists_along_each_yarn_by_its_stiffness() {
             assert!((got / expected - 1.0).abs() < 1e-9, "{stretch}: {got} beside {expected}");
         }
     }
-    let slide = 0.02;
+    let slide: f64 = 0.02;
     let expected = 0.5 * 80.0 * slide * slide + 0.5 * 1200.0 * (0.5 * slide * slide).powi(2);
     let got = energy(1.0, 1.0, slide);
     assert!((got / expected - 1.0).abs() < 1e-9, "{got} beside {expected}");

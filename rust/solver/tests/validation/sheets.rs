@@ -76,6 +76,7 @@ pub(crate) fn network(
         pins,
         pin_weights: Vec::new(),
         pin_material: PinMaterial::default(),
+        fabric: None,
         material,
         collision: None,
         tailoring: Tailoring::default(),

@@ -26,6 +26,7 @@ use std::ops::{Add, Mul, Sub};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
+use crate::grouped::Grouped;
 use crate::linear::chebyshev;
 
 /// Hinges that one task handles at the least.
@@ -92,13 +93,12 @@ impl Face {
 }
 
 /// The sum of all compliances, scaled so that its diagonal is 1, and the polynomial that stands for its inverse.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Compliance {
     /// For each hinge, the root of what its angle is multiplied by; 0 for one that takes no moment.
     scale: Vec<f64>,
-    /// For each hinge, where its neighbors begin, and the end of the last.
-    starts: Vec<u32>,
-    neighbors: Vec<(u32, f32)>,
+    /// The entries of each hinge's row off the diagonal, and whose they are.
+    neighbors: Grouped<(u32, f32)>,
     /// `keep` and `gain` of each Chebyshev step.
     steps: Vec<[f32; 2]>,
     /// The largest eigenvalue of the polynomial.
@@ -142,19 +142,17 @@ impl Compliance {
         let scale: Vec<f64> =
             sums.iter().map(|sum| if *sum > 0.0 { 1.0 / sum.sqrt() } else { 0.0 }).collect();
         entries.sort_by_key(|&(hinge, other, _)| (hinge, other));
-        let starts = (0..=hinge_count as u32)
-            .map(|hinge| entries.partition_point(|entry| entry.0 < hinge) as u32)
-            .collect();
         let neighbors = entries.iter().map(|&(hinge, other, value)| {
-            (other, (value * scale[hinge as usize] * scale[other as usize]) as f32)
+            let scaled = value * scale[hinge as usize] * scale[other as usize];
+            (hinge, (other, scaled as f32))
         });
-        let neighbors = neighbors.collect();
-        Self { scale, starts, neighbors, steps: steps(bounds), largest: (1.0 + LEFT) / bounds[0] }
+        let neighbors = Grouped::new(hinge_count, neighbors);
+        Self { scale, neighbors, steps: steps(bounds), largest: (1.0 + LEFT) / bounds[0] }
     }
 
     /// No moment of all hinges, each turned by at most as much as this one, is larger than this (N·m/rad) times the angle.
     pub(super) fn stiffest(&self, hinge: usize) -> f64 {
-        self.largest * self.scale[hinge].powi(2)
+        self.largest * self.stiffness_alone(hinge)
     }
 
     /// What a hinge turns against (N·m/rad) if no other turns: more or less, since the others follow.
@@ -207,8 +205,7 @@ impl Compliance {
 
     /// A row of the scaled matrix times a vector.
     fn row<N: Number>(&self, hinge: usize, vector: &[N]) -> N {
-        let entries = self.starts[hinge] as usize..self.starts[hinge + 1] as usize;
-        let others = self.neighbors[entries].iter();
+        let others = self.neighbors.of(hinge).iter();
         others
             .fold(vector[hinge], |sum, &(other, value)| sum + N::of(value) * vector[other as usize])
     }

@@ -42,7 +42,7 @@ const FLATTEST: f64 = 1e-3;
 const TASK: usize = 1024;
 
 /// All fabrics among the cloths.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Fabrics {
     laws: Vec<MembraneLaw>,
     /// For each law, the time (s) by which the bending stiffness is multiplied to damp.
@@ -59,8 +59,8 @@ pub(crate) struct Fabrics {
     rest_gradients: Vec<[Vector; 4]>,
     compliance: Compliance,
     /// For each chunk of particles, the triangles and hinges that reach into it.
-    triangles_of: Option<Grouped<u32>>,
-    hinges_of: Option<Grouped<u32>>,
+    triangles_of: Grouped<u32>,
+    hinges_of: Grouped<u32>,
 }
 
 /// The triangles and hinges of one cloth.
@@ -81,26 +81,20 @@ pub(crate) struct FabricScratch {
 
 impl Fabrics {
     pub(crate) fn new(cloths: &[Cloth]) -> Self {
-        let mut fabrics = Self::default();
+        let (mut laws, mut bend_times, mut parts) = (Vec::new(), Vec::new(), Vec::new());
         let mut elements = Elements::default();
         for (cloth, base) in placed(cloths) {
-            let first = elements.triangles.len();
-            let first_hinge = elements.hinges.len();
-            let Some(fabric) = &cloth.fabric else {
-                fabrics
-                    .parts
-                    .push(Part { triangles: first..first, hinges: first_hinge..first_hinge });
-                continue;
-            };
-            let law = fabrics.laws.len() as u32;
-            elements.add(cloth, fabric, base, law);
-            let area: f64 = elements.triangles[first..].iter().map(|one| one.area).sum();
-            let density = cloth.masses.iter().sum::<f64>() / area;
-            let [stretch, shear, bend] = damping_times(fabric, density);
-            fabrics.laws.push(MembraneLaw::new(fabric, [stretch, shear]));
-            fabrics.bend_times.push(bend);
+            let [first, first_hinge] = [elements.triangles.len(), elements.hinges.len()];
+            if let Some(fabric) = &cloth.fabric {
+                elements.add(cloth, fabric, base, laws.len() as u32);
+                let area: f64 = elements.triangles[first..].iter().map(|one| one.area).sum();
+                let density = cloth.masses.iter().sum::<f64>() / area;
+                let [stretch, shear, bend] = damping_times(fabric, density);
+                laws.push(MembraneLaw::new(fabric, [stretch, shear]));
+                bend_times.push(bend);
+            }
             let triangles = first..elements.triangles.len();
-            fabrics.parts.push(Part { triangles, hinges: first_hinge..elements.hinges.len() });
+            parts.push(Part { triangles, hinges: first_hinge..elements.hinges.len() });
         }
         let count: usize = cloths.iter().map(|cloth| cloth.positions.len()).sum();
         let chunks = count.div_ceil(CHUNK);
@@ -110,7 +104,6 @@ impl Fabrics {
         let rest_gradients = hinges
             .iter()
             .map(|one| hinge::gradient(one.corners.map(|corner| rest[corner as usize])));
-        fabrics.rest_gradients = rest_gradients.collect();
         let reaching = |corners: &[u32], number: usize| {
             let mut chunks: Vec<u32> = corners.iter().map(|corner| corner / CHUNK as u32).collect();
             chunks.sort_unstable();
@@ -119,13 +112,21 @@ impl Fabrics {
         };
         let of_triangles = triangles.iter().enumerate();
         let of_triangles = of_triangles.flat_map(|(i, one)| reaching(&one.corners, i));
-        fabrics.triangles_of = Some(Grouped::new(chunks, of_triangles));
         let of_hinges = hinges.iter().enumerate();
         let of_hinges = of_hinges.flat_map(|(i, one)| reaching(&one.corners, i));
-        fabrics.hinges_of = Some(Grouped::new(chunks, of_hinges));
-        let mut fabrics = Self { triangles, faces, sides, hinges, ..fabrics };
-        fabrics.follow_pins(|_| false);
-        fabrics
+        Self {
+            laws,
+            bend_times,
+            rest_gradients: rest_gradients.collect(),
+            compliance: Compliance::new(hinges.len(), &faces, |_| false),
+            triangles_of: Grouped::new(chunks, of_triangles),
+            hinges_of: Grouped::new(chunks, of_hinges),
+            triangles,
+            faces,
+            sides,
+            hinges,
+            parts,
+        }
     }
 
     pub(crate) fn is_empty(&self) -> bool {
@@ -217,7 +218,7 @@ impl Fabrics {
                 }
             }
         };
-        for &number in group(self.triangles_of.as_ref(), chunk) {
+        for &number in self.triangles_of.of(chunk) {
             let triangle = &self.triangles[number as usize];
             let law = &self.laws[triangle.law as usize];
             let frame = triangle.frame(|corner| state.position.get(corner as usize));
@@ -236,7 +237,7 @@ impl Fabrics {
                 add(triangle.corners[i], -(dw[i] * flows[0] + df[i] * flows[1]));
             }
         }
-        for &number in group(self.hinges_of.as_ref(), chunk) {
+        for &number in self.hinges_of.of(chunk) {
             let number = number as usize;
             let moment = scratch.moments[number];
             let corners = self.hinges[number].corners.iter();
@@ -259,10 +260,10 @@ impl Fabrics {
         })
     }
 
-    /// The energy (J) of a cloth whose particles are these.
-    pub(crate) fn energy(&self, particles: &Range<usize>, state: &State) -> f64 {
-        let is_own = |corner: u32| particles.contains(&(corner as usize));
-        let triangles = self.triangles.iter().filter(|one| is_own(one.corners[0]));
+    /// The energy (J) of some cloths.
+    pub(crate) fn energy(&self, cloths: Range<usize>, state: &State) -> f64 {
+        let parts = &self.parts[cloths];
+        let triangles = parts.iter().flat_map(|part| &self.triangles[part.triangles.clone()]);
         let of_membrane: f64 = triangles
             .map(|one| {
                 let frame = one.frame(|corner| state.position.get(corner as usize));
@@ -275,9 +276,8 @@ impl Fabrics {
         let angles: Vec<f64> = angles.collect();
         let mut moments = Vec::new();
         self.compliance.moments(&angles, &mut moments, &mut compliance::Scratch::default(), |x| x);
-        let hinges = self.hinges.iter().zip(angles.iter().zip(&moments));
-        let own = hinges.filter(|(one, _)| is_own(one.corners[0]));
-        of_membrane + own.map(|(_, (angle, moment))| 0.5 * angle * moment).sum::<f64>()
+        let own = parts.iter().flat_map(|part| part.hinges.clone());
+        of_membrane + own.map(|number| 0.5 * angles[number] * moments[number]).sum::<f64>()
     }
 
     /// Bounds of the bending stiffness and damping of any motion by its mass (1/s², 1/s), near the shape at rest.
@@ -340,8 +340,4 @@ fn damping_times(fabric: &Fabric, density: f64) -> [f64; 3] {
     let of = |(ratio, w): (f64, f64)| if w > 0.0 { 2.0 * ratio / w } else { 0.0 };
     let [a, b, c] = fabric.damping_ratio;
     [(a, speeds[0]), (b, speeds[1]), (c, speeds[2])].map(of)
-}
-
-fn group(groups: Option<&Grouped<u32>>, chunk: usize) -> &[u32] {
-    groups.map_or(&[], |groups| groups.of(chunk))
 }

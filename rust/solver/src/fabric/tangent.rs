@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::compliance;
 use super::membrane::positive_part;
-use super::{FabricScratch, Fabrics, group};
+use super::{FabricScratch, Fabrics};
 use crate::kernel::CHUNK;
 use crate::linear::{Entries, Field};
 use crate::state::Coordinates;
@@ -64,7 +64,7 @@ impl Tangent {
         let (mut packs, mut packs_of_chunk) = (Vec::new(), Vec::new());
         for chunk in 0..particle_count.div_ceil(CHUNK) {
             let first = packs.len();
-            let numbers = group(fabrics.triangles_of.as_ref(), chunk);
+            let numbers = fabrics.triangles_of.of(chunk);
             packs.extend(numbers.chunks(LANES).map(|numbers| pack(fabrics, numbers)));
             packs_of_chunk.push(first..packs.len());
         }
@@ -185,7 +185,7 @@ impl<'a> FabricProduct<'a> {
         out: &mut [&mut [f32]; 3],
     ) {
         let Self { fabrics, tangent } = *self;
-        for &number in group(fabrics.hinges_of.as_ref(), first / CHUNK) {
+        for &number in fabrics.hinges_of.of(first / CHUNK) {
             let number = number as usize;
             let moment = moments.0.moments[number];
             let moment = if SUBTRACT { -moment } else { moment };
@@ -204,7 +204,7 @@ impl<'a> FabricProduct<'a> {
     /// Adds the blocks on the diagonal of a chunk's particles, of hinges as if each were alone.
     pub(crate) fn add_blocks(&self, first: usize, blocks: &mut Entries<&mut [f32]>) {
         let Self { fabrics, tangent } = *self;
-        for &number in group(fabrics.hinges_of.as_ref(), first / CHUNK) {
+        for &number in fabrics.hinges_of.of(first / CHUNK) {
             let hinge = &fabrics.hinges[number as usize];
             let stiffness = tangent.damped[hinge.law as usize]
                 * fabrics.compliance.stiffness_alone(number as usize) as f32;

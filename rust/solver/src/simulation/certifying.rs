@@ -19,9 +19,7 @@ impl Simulation {
         let goals = &self.system.goals;
         let of_goals: f64 =
             cloths.clone().map(|cloth| goals.energy(self.particles(cloth), &self.state)).sum();
-        let fabrics = &self.system.fabrics;
-        let of_fabrics: f64 =
-            cloths.clone().map(|cloth| fabrics.energy(&self.particles(cloth), &self.state)).sum();
+        let of_fabrics = self.system.fabrics.energy(cloths.clone(), &self.state);
         let cloths = self.cloths[cloths.clone()].iter().zip(self.bases[cloths].iter().copied());
         let certificate =
             certify(cloths, &self.state, &self.settings.gravity, self.frame, self.substeps_taken);

@@ -7,7 +7,7 @@ for any number of threads.
 """
 
 from collections.abc import Buffer, Callable, Mapping, Sequence
-from typing import final
+from typing import Any, final
 
 __version__: str
 
@@ -288,6 +288,15 @@ def bake(
 
     Returns:
         The report, as in report.json.
+    """
+
+def fabric_presets() -> dict[str, dict[str, Any]]:
+    """All fabrics that a scene's `preset` may name.
+
+    Returns:
+        By name, the keys of rust/scene/presets/fabrics.toml: title, density (kg/m²), thickness (m), stretch_warp, stretch_weft
+        and shear (N/m), bend_warp and bend_weft (N·m), friction, deformation_rate, damping_ratio, source, and, where anybody
+        has measured it, drape_coefficient ([lowest, highest], %).
     """
 
 def point_triangle_distance(points: Buffer, out: Buffer) -> None:

@@ -6,6 +6,7 @@
 //! - `simulation`: the class `Simulation`; `access`: what is inside it
 //! - `interrupter`: the class `Interrupter`
 //! - `bake`: the function `bake`
+//! - `presets`: the function `fabric_presets`
 //! - `geometry`: distances, collisions and intersections of many features at once
 //!
 //! The surface is written down in `boucle_core.pyi`. Where the environment holds `BOUCLE_TEST_HOOKS` when the module is
@@ -19,6 +20,7 @@ mod buffers;
 mod geometry;
 mod interrupter;
 mod meshes;
+mod presets;
 mod simulation;
 
 use pyo3::prelude::*;
@@ -31,6 +33,7 @@ fn boucle_core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<simulation::Simulation>()?;
     module.add_class::<interrupter::Interrupter>()?;
     module.add_function(wrap_pyfunction!(bake::bake, module)?)?;
+    module.add_function(wrap_pyfunction!(presets::fabric_presets, module)?)?;
     module.add_function(wrap_pyfunction!(geometry::point_triangle_distance, module)?)?;
     module.add_function(wrap_pyfunction!(geometry::edge_edge_distance, module)?)?;
     module.add_function(wrap_pyfunction!(geometry::point_triangle_impact, module)?)?;

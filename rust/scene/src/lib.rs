@@ -32,7 +32,7 @@ pub use collider::RestCollider;
 pub use description::Scene;
 pub use error::{Error, Result};
 pub use grid::PLACES;
-pub use preset::{FabricPreset, fabric_presets};
+pub use preset::{FabricPreset, fabric_presets, fabric_presets_json};
 pub use samples::Samples;
 
 /// The version of Boucle, as reports name it.

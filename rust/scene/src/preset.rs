@@ -50,6 +50,12 @@ pub fn fabric_presets() -> &'static BTreeMap<String, FabricPreset> {
     &PRESETS
 }
 
+/// All fabrics as a JSON object of objects, whose keys are those of the file.
+#[must_use]
+pub fn fabric_presets_json() -> String {
+    serde_json::to_string(fabric_presets()).unwrap_or_default()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

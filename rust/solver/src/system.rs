@@ -148,7 +148,8 @@ impl WithSimd for Task<'_> {
             system.air.add_forces(chunk, at, &self.observed.air, &mut sums.arriving);
         }
         if !system.fabrics.is_empty() {
-            system.fabrics.add_forces(chunk, at, &self.observed.fabric, &mut sums.arriving);
+            let observed = &self.observed.fabric;
+            system.fabrics.add_forces(simd, chunk, at, observed, &mut sums.arriving);
         }
         if !system.goals.is_empty() {
             system.goals.add_forces(chunk, at, self.motion.stage, &mut sums.arriving);

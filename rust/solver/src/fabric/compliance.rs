@@ -21,19 +21,21 @@
 //!
 //! Source: Morley 1968 for the element; Grinspun et al. 2006 for normals at edges.
 
-use std::ops::{Add, Mul, Sub};
+use std::ops::{Add, AddAssign, Mul, Sub};
 
 use nalgebra::{Matrix3, Vector3};
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::grouped::Grouped;
+use super::packs::{LANES, Places};
 use crate::linear::chebyshev;
 
-/// Hinges that one task handles at the least.
-const CHUNK: usize = 4096;
+/// Hinges that one task handles.
+const TASK: usize = 4096;
 
-/// Error of the moments that is left, as a part of them.
+/// Error of the moments that is left, as a part of them: in forces, and in tangents.
 const LEFT: f64 = 0.02;
+const LEFT_IN_TANGENTS: f64 = 0.1;
 
 /// The most Chebyshev steps: slivers are then stiffer than they should be.
 const MOST_STEPS: usize = 24;
@@ -43,7 +45,14 @@ const LEAST_PART: f64 = 1e-3;
 
 /// A number that moments and angles are computed in.
 pub(super) trait Number:
-    Copy + Default + Send + Sync + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+    Copy
+    + Default
+    + Send
+    + Sync
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + AddAssign
 {
     fn of(value: f32) -> Self;
 }
@@ -92,18 +101,28 @@ impl Face {
     }
 }
 
+/// The entries off the diagonal in the rows of a pack of hinges, and whose they are.
+#[derive(Clone, Debug)]
+struct Rows {
+    neighbors: [Places; 4],
+    values: [[f32; LANES]; 4],
+    /// For each hinge, the root of what its angle is multiplied by; 0 for one that takes no moment.
+    scale: [f32; LANES],
+}
+
 /// The sum of all compliances, scaled so that its diagonal is 1, and the polynomial that stands for its inverse.
 #[derive(Debug)]
 pub(super) struct Compliance {
-    /// For each hinge, the root of what its angle is multiplied by; 0 for one that takes no moment.
-    scale: Vec<f64>,
-    /// The entries of each hinge's row off the diagonal, and whose they are.
-    neighbors: Grouped<(u32, f32)>,
-    /// `keep` and `gain` of each Chebyshev step.
-    steps: Vec<[f32; 2]>,
+    rows: Vec<Rows>,
+    steps: Steps,
+    steps_in_tangents: Steps,
     /// The largest eigenvalue of the polynomial.
     largest: f64,
+    arch: Arch,
 }
+
+/// `keep` and `gain` of each Chebyshev step.
+type Steps = Vec<[f32; 2]>;
 
 /// Vectors of the Chebyshev steps.
 #[derive(Clone, Debug, Default)]
@@ -121,7 +140,7 @@ impl Compliance {
         is_rigid: impl Fn(usize) -> bool,
     ) -> Self {
         let mut sums = vec![0.0; hinge_count];
-        let mut entries: Vec<(u32, u32, f64)> = Vec::new();
+        let mut entries: Vec<Vec<(u32, f64)>> = vec![Vec::new(); hinge_count];
         let mut bounds = [1.0_f64, 1.0_f64];
         for (number, face) in faces.iter().enumerate() {
             if is_rigid(number) || face.bend.iter().all(|bend| *bend <= 0.0) {
@@ -133,21 +152,43 @@ impl Compliance {
                 sums[hinge as usize] += compliance[(i, i)];
                 for j in 0..3 {
                     if let (true, Some(other)) = (i != j, face.hinges[j]) {
-                        entries.push((hinge, other, compliance[(i, j)]));
+                        entries[hinge as usize].push((other, compliance[(i, j)]));
                     }
                 }
             }
             bounds = widened(bounds, &compliance);
         }
-        let scale: Vec<f64> =
-            sums.iter().map(|sum| if *sum > 0.0 { 1.0 / sum.sqrt() } else { 0.0 }).collect();
-        entries.sort_by_key(|&(hinge, other, _)| (hinge, other));
-        let neighbors = entries.iter().map(|&(hinge, other, value)| {
-            let scaled = value * scale[hinge as usize] * scale[other as usize];
-            (hinge, (other, scaled as f32))
-        });
-        let neighbors = Grouped::new(hinge_count, neighbors);
-        Self { scale, neighbors, steps: steps(bounds), largest: (1.0 + LEFT) / bounds[0] }
+        for own in &mut entries {
+            own.sort_by_key(|(other, _)| *other);
+        }
+        let scale = |hinge: usize| if sums[hinge] > 0.0 { 1.0 / sums[hinge].sqrt() } else { 0.0 };
+        let pack = |first: usize| {
+            let count = LANES.min(hinge_count - first);
+            let entry = |lane: usize, place: usize| {
+                let own = (lane < count).then(|| entries[first + lane].get(place)).flatten();
+                // What lacks is the hinge itself, times 0.
+                own.map_or(
+                    (((first + lane).min(hinge_count - 1)) as u32, 0.0),
+                    |&(other, value)| (other, value * scale(first + lane) * scale(other as usize)),
+                )
+            };
+            let values = |place| std::array::from_fn(|lane| entry(lane, place).1 as f32);
+            Rows {
+                neighbors: [0, 1, 2, 3]
+                    .map(|place| Places::new(LANES, |lane| entry(lane, place).0)),
+                values: [0, 1, 2, 3].map(values),
+                scale: std::array::from_fn(|lane| {
+                    if lane < count { scale(first + lane) as f32 } else { 0.0 }
+                }),
+            }
+        };
+        Self {
+            rows: (0..hinge_count).step_by(LANES).map(pack).collect(),
+            steps: steps(bounds, LEFT),
+            steps_in_tangents: steps(bounds, LEFT_IN_TANGENTS),
+            largest: (1.0 + LEFT) / bounds[0],
+            arch: Arch::new(),
+        }
     }
 
     /// No moment of all hinges, each turned by at most as much as this one, is larger than this (N·m/rad) times the angle.
@@ -157,57 +198,136 @@ impl Compliance {
 
     /// What a hinge turns against (N·m/rad) if no other turns: more or less, since the others follow.
     pub(super) fn stiffness_alone(&self, hinge: usize) -> f64 {
-        self.scale[hinge].powi(2)
+        f64::from(self.rows[hinge / LANES].scale[hinge % LANES]).powi(2)
     }
 
-    /// Fills `moments` (N·m) with what angles (rad) would press, were each hinge alone.
-    pub(super) fn moments_alone(&self, angles: &[f32], moments: &mut Vec<f32>) {
-        moments.resize(angles.len(), 0.0);
-        let rows = moments.par_iter_mut().zip(angles).enumerate().with_min_len(CHUNK);
-        rows.for_each(|(hinge, (moment, angle))| {
-            *moment = self.stiffness_alone(hinge) as f32 * angle;
-        });
+    /// Fills `moments` (N·m) with what angles (rad) press; both end with as many zeros as make the last pack whole.
+    pub(super) fn moments(
+        &self,
+        angles: &[f64],
+        moments: &mut Vec<f64>,
+        scratch: &mut Scratch<f64>,
+    ) {
+        self.press(angles, moments, scratch, &self.steps);
     }
 
-    /// Fills `moments` (N·m) with what angles (rad) press.
-    pub(super) fn moments<N: Number>(
+    /// The same in tangents: less exactly, since Newton's iterations mend them.
+    pub(super) fn moments_in_tangents(
+        &self,
+        angles: &[f32],
+        moments: &mut Vec<f32>,
+        scratch: &mut Scratch<f32>,
+    ) {
+        self.press(angles, moments, scratch, &self.steps_in_tangents);
+    }
+
+    fn press<N: Number>(
         &self,
         angles: &[N],
         moments: &mut Vec<N>,
         scratch: &mut Scratch<N>,
-        to_number: impl Fn(f64) -> N + Sync,
+        steps: &Steps,
     ) {
-        let count = angles.len();
         let Scratch { left, step, last } = scratch;
         for vector in [&mut *moments, &mut *left, &mut *step, &mut *last] {
-            vector.clear();
-            vector.resize(count, N::default());
+            vector.resize(angles.len(), N::default());
         }
-        let scaled = left.par_iter_mut().zip(angles).zip(&self.scale).with_min_len(CHUNK);
-        scaled.for_each(|((left, angle), scale)| *left = *angle * to_number(*scale));
-        for (number, [keep, gain]) in self.steps.iter().enumerate() {
-            let [keep, gain] = [keep, gain].map(|factor| N::of(*factor));
-            if number > 0 {
-                std::mem::swap(step, last);
-                let last = &*last;
-                let rows = left.par_iter_mut().enumerate().with_min_len(CHUNK);
-                rows.for_each(|(hinge, left)| *left = *left - self.row(hinge, last));
-            }
-            let rows = step.par_iter_mut().zip(&*left).zip(&*last).zip(&mut *moments);
-            rows.with_min_len(CHUNK).for_each(|(((step, left), last), moment)| {
-                *step = keep * *last + gain * *left;
-                *moment = *moment + *step;
+        for (number, factors) in steps.iter().enumerate() {
+            let factors = factors.map(N::of);
+            let is_last = number + 1 == steps.len();
+            std::mem::swap(step, last);
+            let last = &*last;
+            let tasks = left.par_chunks_mut(TASK).zip(step.par_chunks_mut(TASK));
+            let tasks = tasks.zip(moments.par_chunks_mut(TASK)).zip(angles.par_chunks(TASK));
+            let tasks = tasks.zip(self.rows.par_chunks(TASK / LANES)).enumerate();
+            tasks.for_each(|(task, ((((left, step), moments), angles), rows))| {
+                let own = &last[task * TASK..task * TASK + left.len()];
+                let press =
+                    Press { rows, factors, is_last, angles, last, own, left, step, moments };
+                if number == 0 {
+                    self.arch.dispatch(First(press));
+                } else {
+                    self.arch.dispatch(press);
+                }
             });
         }
-        let scaled = moments.par_iter_mut().zip(&self.scale).with_min_len(CHUNK);
-        scaled.for_each(|(moment, scale)| *moment = *moment * to_number(*scale));
     }
+}
 
-    /// A row of the scaled matrix times a vector.
-    fn row<N: Number>(&self, hinge: usize, vector: &[N]) -> N {
-        let others = self.neighbors.of(hinge).iter();
-        others
-            .fold(vector[hinge], |sum, &(other, value)| sum + N::of(value) * vector[other as usize])
+/// One Chebyshev step of some packs.
+struct Press<'a, N> {
+    rows: &'a [Rows],
+    factors: [N; 2],
+    is_last: bool,
+    angles: &'a [N],
+    /// The last step of all hinges, and of these.
+    last: &'a [N],
+    own: &'a [N],
+    left: &'a mut [N],
+    step: &'a mut [N],
+    moments: &'a mut [N],
+}
+
+/// The first step, before which nothing was.
+struct First<'a, N>(Press<'a, N>);
+
+impl<N: Number> WithSimd for Press<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.run::<false>();
+    }
+}
+
+impl<N: Number> WithSimd for First<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.0.run::<true>();
+    }
+}
+
+impl<N: Number> Press<'_, N> {
+    #[inline(always)]
+    fn run<const IS_FIRST: bool>(self) {
+        let Self { rows, factors: [keep, gain], is_last, last, .. } = self;
+        let (angles, own) = (self.angles.as_chunks().0, self.own.as_chunks().0);
+        let (left, step) = (self.left.as_chunks_mut().0, self.step.as_chunks_mut().0);
+        let moments = self.moments.as_chunks_mut::<LANES>().0;
+        for (pack, rows) in rows.iter().enumerate() {
+            let (angles, own): (&[N; LANES], &[N; LANES]) = (&angles[pack], &own[pack]);
+            let (left, step): (&mut [N; LANES], &mut [N; LANES]) =
+                (&mut left[pack], &mut step[pack]);
+            let moments = &mut moments[pack];
+            let scale = rows.scale.map(N::of);
+            if IS_FIRST {
+                for lane in 0..LANES {
+                    left[lane] = scale[lane] * angles[lane];
+                    step[lane] = gain * left[lane];
+                    moments[lane] = step[lane];
+                }
+            } else {
+                let mut sums = *own;
+                for (places, values) in rows.neighbors.iter().zip(&rows.values) {
+                    let others = places.load(last);
+                    for lane in 0..LANES {
+                        sums[lane] += N::of(values[lane]) * others[lane];
+                    }
+                }
+                for lane in 0..LANES {
+                    left[lane] = left[lane] - sums[lane];
+                    step[lane] = keep * own[lane] + gain * left[lane];
+                    moments[lane] += step[lane];
+                }
+            }
+            if is_last {
+                for lane in 0..LANES {
+                    moments[lane] = moments[lane] * scale[lane];
+                }
+            }
+        }
     }
 }
 
@@ -222,12 +342,12 @@ fn widened([low, high]: [f64; 2], compliance: &Matrix3<f64>) -> [f64; 2] {
     [low.min(eigenvalues.min()), high.max(eigenvalues.max())]
 }
 
-/// As many Chebyshev steps as leave little of the error.
-fn steps([low, high]: [f64; 2]) -> Vec<[f32; 2]> {
+/// As many Chebyshev steps as leave a part of the error.
+fn steps([low, high]: [f64; 2], part: f64) -> Steps {
     // Of a matrix that is hardly regular, the steps leave the softest parts out.
     let low = low.max(high / 400.0).min(0.98 * high);
     let root = (high / low).sqrt();
     let factor = (root - 1.0) / (root + 1.0);
-    let count = ((0.5 * LEFT).ln() / factor.ln()).ceil().clamp(1.0, MOST_STEPS as f64);
+    let count = ((0.5 * part).ln() / factor.ln()).ceil().clamp(1.0, MOST_STEPS as f64);
     chebyshev::steps(low as f32, high as f32).take(count as usize).collect()
 }

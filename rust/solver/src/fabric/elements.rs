@@ -6,6 +6,7 @@ use super::compliance::Face;
 use super::hinge;
 use super::material::{Fabric, Warp};
 use super::membrane::Triangle;
+use super::packs;
 use crate::cloth::Cloth;
 use crate::law::Spring;
 use crate::material::SpringKind;
@@ -20,6 +21,8 @@ pub(super) struct Hinge {
     pub(super) corners: [u32; 4],
     /// rad
     pub(super) rest_angle: f64,
+    /// What the heights of its corners count for in its angle (1/m).
+    pub(super) weights: [f64; 4],
     pub(super) law: u32,
 }
 
@@ -46,7 +49,10 @@ impl Elements {
             let place = springs.partition_point(|(ends, _)| *ends < pair);
             springs[place].1
         };
-        for (place, (corners, map)) in mapped_triangles(mesh, &fabric.warp).enumerate() {
+        let triangles: Vec<_> = mapped_triangles(mesh, &fabric.warp).collect();
+        let corners: Vec<[u32; 3]> = triangles.iter().map(|(corners, _)| *corners).collect();
+        for (place, number) in packs::order(&corners).into_iter().enumerate() {
+            let (corners, map) = triangles[number as usize];
             let number = (first + place) as u32;
             let at = corners.map(|corner| positions[corner as usize]);
             let flat = flattened(at, warp_of(at, &fabric.warp, map));
@@ -60,18 +66,23 @@ impl Elements {
             self.sides.push(pairs.map(spring_of));
         }
         sides.sort_unstable();
+        let mut hinges = Vec::new();
         for same in sides.chunk_by(|a, b| a.0 == b.0) {
             // An edge of three faces or more has no angle: it is free to fold.
             let [(_, one, i), (_, other, j)] = *same else { continue };
             let own = |number: u32| self.triangles[number as usize].corners;
             let [a, b, left] = [0, 1, 2].map(|k| own(one)[(i + k) % 3]);
-            let right = own(other)[(j + 2) % 3];
-            let corners = [a, b, left, right];
-            let number = self.hinges.len() as u32;
-            self.faces[one as usize].hinges[i] = Some(number);
-            self.faces[other as usize].hinges[j] = Some(number);
+            hinges.push(([a, b, left, own(other)[(j + 2) % 3]], [(one, i), (other, j)]));
+        }
+        let corners: Vec<[u32; 4]> = hinges.iter().map(|(corners, _)| *corners).collect();
+        for number in packs::order(&corners) {
+            let (corners, faces) = hinges[number as usize];
+            for (face, side) in faces {
+                self.faces[face as usize].hinges[side] = Some(self.hinges.len() as u32);
+            }
             let at = corners.map(|corner| positions[(corner - base) as usize]);
-            self.hinges.push(Hinge { corners, rest_angle: hinge::angle(at), law });
+            let (rest_angle, weights) = (hinge::angle(at), hinge::weights(at));
+            self.hinges.push(Hinge { corners, rest_angle, weights, law });
         }
     }
 }

@@ -23,7 +23,9 @@
 
 use boucle_geometry::Vector;
 
+use super::hinge::{Point, dot, plus, scaled};
 use super::material::Fabric;
+use crate::law::number::Number;
 
 /// One triangle at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,10 +52,10 @@ impl Triangle {
         Self { corners, gradients, area: 0.5 * twice.abs(), law }
     }
 
-    /// U and V, of positions or of velocities.
-    pub(super) fn frame(&self, of: impl Fn(u32) -> Vector) -> [Vector; 2] {
+    /// U and V, of positions.
+    pub(super) fn frame(&self, of: impl Fn(u32) -> Vector) -> Frame<f64> {
         let [a, b, c] = self.corners.map(of);
-        self.gradients.map(|[da, db, dc]| da * a + db * b + dc * c)
+        self.gradients.map(|[_, db, dc]| (db * (b - a) + dc * (c - a)).into())
     }
 }
 
@@ -67,16 +69,31 @@ pub(crate) struct MembraneLaw {
     pub(crate) times: [f64; 2],
 }
 
+/// U and V.
+pub(super) type Frame<N> = [Point<N>; 2];
+
 /// What a triangle does in one state.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Strained {
-    pub(super) frame: [Vector; 2],
+pub(super) struct Strained<N> {
+    pub(super) frame: Frame<N>,
     /// Present stiffness (N/m) along warp and weft: that of tension or of compression.
-    pub(super) stiffness: [f64; 2],
+    pub(super) stiffness: [N; 2],
+    /// `E_ww, E_ff, g`.
+    pub(super) strain: [N; 3],
     /// `s_ww, s_ff, s_wf` (N/m) without damping.
-    pub(super) stress: [f64; 3],
+    pub(super) stress: [N; 3],
+}
+
+impl Strained<f64> {
     /// J/m²
-    pub(super) energy: f64,
+    pub(super) fn energy(&self) -> f64 {
+        0.5 * self
+            .stress
+            .iter()
+            .zip(&self.strain)
+            .map(|(stress, strain)| stress * strain)
+            .sum::<f64>()
+    }
 }
 
 impl MembraneLaw {
@@ -85,27 +102,45 @@ impl MembraneLaw {
         Self { stretch, compression, shear, times }
     }
 
-    pub(super) fn strained(&self, frame: [Vector; 2]) -> Strained {
-        let strain = frame.map(|axis| 0.5 * (axis.norm_squared() - 1.0));
-        let slide = frame[0].dot(&frame[1]);
-        let of =
-            [0, 1].map(|i| if strain[i] < 0.0 { self.compression[i] } else { self.stretch[i] });
-        let stress = [of[0] * strain[0], of[1] * strain[1], self.shear * slide];
-        let energy = 0.5 * (stress[0] * strain[0] + stress[1] * strain[1] + stress[2] * slide);
-        Strained { frame, stiffness: of, stress, energy }
+    #[inline(always)]
+    pub(super) fn strained<N: Number>(&self, frame: Frame<N>) -> Strained<N> {
+        let [u, v] = frame;
+        let one = u[0].all(1.0);
+        let half = u[0].all(0.5);
+        let strain = [half * (dot(u, u) - one), half * (dot(v, v) - one), dot(u, v)];
+        let of = |axis: usize| {
+            let pressed = one.all(self.compression[axis]);
+            pressed.where_positive_or(one.all(0.0) - strain[axis], one.all(self.stretch[axis]))
+        };
+        let stiffness = [of(0), of(1)];
+        let stress =
+            [stiffness[0] * strain[0], stiffness[1] * strain[1], one.all(self.shear) * strain[2]];
+        Strained { frame, stiffness, strain, stress }
+    }
+
+    pub(super) fn is_damped(&self) -> bool {
+        self.times.iter().any(|time| *time > 0.0)
     }
 
     /// `s_ww, s_ff, s_wf` (N/m) with damping, for a frame that changes at `rates` (1/s).
-    pub(super) fn damped(&self, strained: &Strained, rates: [Vector; 2]) -> [f64; 3] {
-        let Strained { frame: [u, v], stiffness, stress, .. } = strained;
+    #[inline(always)]
+    pub(super) fn damped<N: Number>(&self, strained: &Strained<N>, rates: Frame<N>) -> [N; 3] {
+        let Strained { frame: [u, v], stiffness, stress, .. } = *strained;
         let [du, dv] = rates;
+        let all = |value: f64| u[0].all(value);
         let [stretch, shear] = self.times;
         [
-            stress[0] + stretch * stiffness[0] * u.dot(&du),
-            stress[1] + stretch * stiffness[1] * v.dot(&dv),
-            stress[2] + shear * self.shear * (u.dot(&dv) + v.dot(&du)),
+            stress[0] + all(stretch) * stiffness[0] * dot(u, du),
+            stress[1] + all(stretch) * stiffness[1] * dot(v, dv),
+            stress[2] + all(shear * self.shear) * (dot(u, dv) + dot(v, du)),
         ]
     }
+}
+
+/// What pulls at the frame: `s_ww U + s_wf V` and `s_wf U + s_ff V`.
+#[inline(always)]
+pub(super) fn flows<N: Number>([ww, ff, wf]: [N; 3], [u, v]: Frame<N>) -> [Point<N>; 2] {
+    [plus(scaled(ww, u), scaled(wf, v)), plus(scaled(wf, u), scaled(ff, v))]
 }
 
 /// The largest eigenvalue of a symmetric 2 x 2 matrix: xx, yy, xy.
@@ -114,17 +149,16 @@ pub(super) fn largest([xx, yy, xy]: [f64; 3]) -> f64 {
 }
 
 /// The positive part of a symmetric 2 x 2 matrix: xx, yy, xy.
-pub(super) fn positive_part([xx, yy, xy]: [f64; 3]) -> [f64; 3] {
-    let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-    let radius = half.hypot(xy);
+#[inline(always)]
+pub(super) fn positive_part<N: Number>([xx, yy, xy]: [N; 3]) -> [N; 3] {
+    let (zero, half) = (xx.all(0.0), xx.all(0.5));
+    let (mean, apart) = (half * (xx + yy), half * (xx - yy));
+    let radius = (apart * apart + xy * xy).sqrt();
     let (low, high) = (mean - radius, mean + radius);
-    if low >= 0.0 {
-        return [xx, yy, xy];
-    }
-    if high <= 0.0 {
-        return [0.0; 3];
-    }
-    // high times the projection onto its direction, (I + R/radius)/2 with R = [half, xy; xy, -half].
-    let [c, s] = [half / radius, xy / radius];
-    [0.5 * high * (1.0 + c), 0.5 * high * (1.0 - c), 0.5 * high * s]
+    // high times the projection onto its direction, (I + R/radius)/2 with R = [apart, xy; xy, -apart].
+    let by_radius = half * high / radius.max(xx.all(f64::MIN_POSITIVE));
+    let (even, along, across) = (half * high, by_radius * apart, by_radius * xy);
+    let pulls = |value: N| value.where_positive(high);
+    let own = |whole: N, part: N| pulls(part).where_positive_or(zero - low, whole);
+    [own(xx, even + along), own(yy, even - along), own(xy, across)]
 }

@@ -1,45 +1,51 @@
 //! Cloth as a continuum: triangles that resist strain, hinges between them that resist bending.
 //!
-//! Forces are evaluated in f64, triangle by triangle and hinge by hinge, and each chunk of particles sums its own in a fixed
+//! Forces are evaluated in f64, eight triangles or hinges at a time, and each chunk of particles sums its own in a fixed
 //! order; what reaches over the border of a chunk is computed on both sides.
 
 mod compliance;
 mod coupling;
 mod elements;
 mod hinge;
+mod hinges;
 mod material;
 mod membrane;
+mod observed;
+mod packs;
 mod tangent;
 #[cfg(test)]
 mod tests;
+mod triangles;
 
 pub(crate) use elements::edges;
 pub use material::{Fabric, Warp};
+pub(crate) use observed::FabricScratch;
 pub(crate) use tangent::{FabricProduct, Moments, Tangent};
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use boucle_geometry::Vector;
-use rayon::prelude::*;
+use pulp::Arch;
 
 use crate::cloth::{Cloth, placed};
 use crate::grouped::Grouped;
-use crate::kernel::{CHUNK, ChunkVectors};
+use crate::kernel::CHUNK;
 use crate::law::Spring;
 use crate::state::State;
 use compliance::{Compliance, Face};
+use coupling::Couplings;
 use elements::{Elements, Hinge};
+use hinges::HingePack;
 use membrane::{MembraneLaw, Triangle};
+use packs::LANES;
+use triangles::TrianglePack;
 
 /// The wavelength (m) at which damping ratios hold.
 const DAMPED_WAVELENGTH: f64 = 0.1;
 
 /// The least height of a triangle whose rest lengths are changed, as a part of a side.
 const FLATTEST: f64 = 1e-3;
-
-/// Hinges that one task handles at the least.
-const TASK: usize = 1024;
 
 /// All fabrics among the cloths.
 #[derive(Debug)]
@@ -55,12 +61,15 @@ pub(crate) struct Fabrics {
     hinges: Vec<Hinge>,
     /// What belongs to each cloth.
     parts: Vec<Part>,
-    /// Gradients (1/m) of the hinges' angles at rest.
-    rest_gradients: Vec<[Vector; 4]>,
     compliance: Compliance,
-    /// For each chunk of particles, the triangles and hinges that reach into it.
-    triangles_of: Grouped<u32>,
-    hinges_of: Grouped<u32>,
+    couplings: Couplings,
+    /// Triangles and hinges as they are computed: side by side.
+    triangle_packs: Vec<TrianglePack>,
+    hinge_packs: Vec<HingePack>,
+    /// For each chunk of particles, the packs that reach into it.
+    triangle_packs_of: Grouped<u32>,
+    hinge_packs_of: Grouped<u32>,
+    arch: Arch,
 }
 
 /// The triangles and hinges of one cloth.
@@ -68,15 +77,6 @@ pub(crate) struct Fabrics {
 struct Part {
     triangles: Range<usize>,
     hinges: Range<usize>,
-}
-
-/// What hinges do in one state.
-#[derive(Debug, Default)]
-pub(crate) struct FabricScratch {
-    gradients: Vec<[Vector; 4]>,
-    angles: Vec<f64>,
-    moments: Vec<f64>,
-    steps: compliance::Scratch<f64>,
 }
 
 impl Fabrics {
@@ -98,34 +98,33 @@ impl Fabrics {
         }
         let count: usize = cloths.iter().map(|cloth| cloth.positions.len()).sum();
         let chunks = count.div_ceil(CHUNK);
-        let rest: Vec<Vector> =
-            cloths.iter().flat_map(|cloth| cloth.rest().iter().copied()).collect();
         let Elements { triangles, faces, sides, hinges } = elements;
-        let rest_gradients = hinges
-            .iter()
-            .map(|one| hinge::gradient(one.corners.map(|corner| rest[corner as usize])));
-        let reaching = |corners: &[u32], number: usize| {
-            let mut chunks: Vec<u32> = corners.iter().map(|corner| corner / CHUNK as u32).collect();
-            chunks.sort_unstable();
-            chunks.dedup();
-            chunks.into_iter().map(move |chunk| (chunk, number as u32))
-        };
-        let of_triangles = triangles.iter().enumerate();
-        let of_triangles = of_triangles.flat_map(|(i, one)| reaching(&one.corners, i));
-        let of_hinges = hinges.iter().enumerate();
-        let of_hinges = of_hinges.flat_map(|(i, one)| reaching(&one.corners, i));
+        let compliance = Compliance::new(hinges.len(), &faces, |_| false);
+        let mut couplings = Couplings::new(&triangles, &hinges);
+        couplings.follow(&hinges, &compliance, &bend_times);
+        let triangle_packs = TrianglePack::all(&triangles);
+        let hinge_packs = HingePack::all(&hinges, &bend_times);
+        let in_triangle_packs = triangle_packs.iter().map(|pack| {
+            let own = &triangles[pack.first..pack.first + pack.count];
+            own.iter().flat_map(|one| one.corners).collect()
+        });
+        let in_hinge_packs =
+            hinges.chunks(LANES).map(|own| own.iter().flat_map(|one| one.corners).collect());
         Self {
+            triangle_packs_of: reaching(chunks, in_triangle_packs),
+            hinge_packs_of: reaching(chunks, in_hinge_packs),
             laws,
             bend_times,
-            rest_gradients: rest_gradients.collect(),
-            compliance: Compliance::new(hinges.len(), &faces, |_| false),
-            triangles_of: Grouped::new(chunks, of_triangles),
-            hinges_of: Grouped::new(chunks, of_hinges),
+            compliance,
+            couplings,
+            triangle_packs,
+            hinge_packs,
             triangles,
             faces,
             sides,
             hinges,
             parts,
+            arch: Arch::new(),
         }
     }
 
@@ -139,6 +138,7 @@ impl Fabrics {
             self.triangles[face].corners.iter().all(|&corner| is_pinned(corner as usize))
         };
         self.compliance = Compliance::new(self.hinges.len(), &self.faces, is_rigid);
+        self.couplings.follow(&self.hinges, &self.compliance, &self.bend_times);
     }
 
     /// How many hinges a cloth has.
@@ -176,75 +176,8 @@ impl Fabrics {
         for (one, angle) in self.hinges[hinges].iter_mut().zip(angles) {
             one.rest_angle = *angle;
         }
-    }
-
-    /// Looks at every hinge in `state`.
-    pub(crate) fn observe(&self, state: &State, scratch: &mut FabricScratch) {
-        if self.hinges.is_empty() {
-            return;
-        }
-        let FabricScratch { gradients, angles, moments, steps } = scratch;
-        gradients.resize(self.hinges.len(), [Vector::zeros(); 4]);
-        angles.resize(self.hinges.len(), 0.0);
-        let of_hinges = self.hinges.par_iter().zip(gradients).zip(&mut *angles);
-        of_hinges.with_min_len(TASK).for_each(|((one, gradient), angle)| {
-            let x = one.corners.map(|corner| state.position.get(corner as usize));
-            *gradient = hinge::gradient(x);
-            *angle = elastic_angle(one, x);
-            let time = self.bend_times[one.law as usize];
-            if time > 0.0 {
-                let v = one.corners.map(|corner| state.velocity.get(corner as usize));
-                let rate: f64 = gradient.iter().zip(&v).map(|(g, v)| g.dot(v)).sum();
-                *angle += time * rate;
-            }
-        });
-        self.compliance.moments(angles, moments, steps, |value| value);
-    }
-
-    /// Adds the forces (N) on the particles of a chunk, in a state whose hinges were observed.
-    pub(crate) fn add_forces(
-        &self,
-        chunk: usize,
-        state: &State,
-        scratch: &FabricScratch,
-        forces: &mut ChunkVectors,
-    ) {
-        let first = chunk * CHUNK;
-        let mut add = |corner: u32, force: Vector| {
-            let place = (corner as usize).wrapping_sub(first);
-            if place < CHUNK {
-                for (axis, force) in forces.iter_mut().zip(force.iter()) {
-                    axis[place] += force;
-                }
-            }
-        };
-        for &number in self.triangles_of.of(chunk) {
-            let triangle = &self.triangles[number as usize];
-            let law = &self.laws[triangle.law as usize];
-            let frame = triangle.frame(|corner| state.position.get(corner as usize));
-            let strained = law.strained(frame);
-            let stress = if law.times.iter().all(|time| *time <= 0.0) {
-                strained.stress
-            } else {
-                let rates = triangle.frame(|corner| state.velocity.get(corner as usize));
-                law.damped(&strained, rates)
-            };
-            let [ww, ff, wf] = stress.map(|stress| triangle.area * stress);
-            let [u, v] = frame;
-            let flows = [ww * u + wf * v, wf * u + ff * v];
-            let [dw, df] = triangle.gradients;
-            for i in 0..3 {
-                add(triangle.corners[i], -(dw[i] * flows[0] + df[i] * flows[1]));
-            }
-        }
-        for &number in self.hinges_of.of(chunk) {
-            let number = number as usize;
-            let moment = scratch.moments[number];
-            let corners = self.hinges[number].corners.iter();
-            for (&corner, gradient) in corners.zip(&scratch.gradients[number]) {
-                add(corner, -moment * gradient);
-            }
-        }
+        self.triangle_packs = TrianglePack::all(&self.triangles);
+        self.hinge_packs = HingePack::all(&self.hinges, &self.bend_times);
     }
 
     /// The corners of each triangle of a cloth, and its largest stress over a width as that of its sides (N).
@@ -267,15 +200,17 @@ impl Fabrics {
         let of_membrane: f64 = triangles
             .map(|one| {
                 let frame = one.frame(|corner| state.position.get(corner as usize));
-                one.area * self.laws[one.law as usize].strained(frame).energy
+                one.area * self.laws[one.law as usize].strained(frame).energy()
             })
             .sum();
         let angles = self.hinges.iter().map(|one| {
-            elastic_angle(one, one.corners.map(|corner| state.position.get(corner as usize)))
+            let at = one.corners.map(|corner| state.position.get(corner as usize));
+            hinge::the_shorter_way(hinge::angle(at) - one.rest_angle)
         });
-        let angles: Vec<f64> = angles.collect();
+        let mut angles: Vec<f64> = angles.collect();
+        angles.resize(LANES * self.hinge_packs.len(), 0.0);
         let mut moments = Vec::new();
-        self.compliance.moments(&angles, &mut moments, &mut compliance::Scratch::default(), |x| x);
+        self.compliance.moments(&angles, &mut moments, &mut compliance::Scratch::default());
         let own = parts.iter().flat_map(|part| part.hinges.clone());
         of_membrane + own.map(|number| 0.5 * angles[number] * moments[number]).sum::<f64>()
     }
@@ -283,12 +218,12 @@ impl Fabrics {
     /// Bounds of the bending stiffness and damping of any motion by its mass (1/s², 1/s), near the shape at rest.
     pub(crate) fn bending_bounds(&self, inverse_masses: &[f64]) -> [f64; 2] {
         let mut rows = vec![[0.0_f64; 2]; inverse_masses.len()];
-        for (number, (one, gradient)) in self.hinges.iter().zip(&self.rest_gradients).enumerate() {
+        for (number, one) in self.hinges.iter().enumerate() {
             let stiffness = self.compliance.stiffest(number);
             let damping = self.bend_times[one.law as usize] * stiffness;
-            let sum: f64 = gradient.iter().map(Vector::norm).sum();
-            for (&corner, gradient) in one.corners.iter().zip(gradient) {
-                let part = gradient.norm() * sum * inverse_masses[corner as usize];
+            let sum: f64 = one.weights.iter().map(|weight| weight.abs()).sum();
+            for (&corner, weight) in one.corners.iter().zip(&one.weights) {
+                let part = weight.abs() * sum * inverse_masses[corner as usize];
                 let row = &mut rows[corner as usize];
                 *row = [row[0] + part * stiffness, row[1] + part * damping];
             }
@@ -314,16 +249,16 @@ fn resized(flat: [[f64; 2]; 3], [ab, bc, ca]: [f64; 3]) -> [[f64; 2]; 3] {
     [[0.0; 2], [ab * x, ab * y], [along * x - across * y, along * y + across * x]]
 }
 
-/// The angle (rad) less that at rest, the shorter way around.
-fn elastic_angle(one: &Hinge, x: [Vector; 4]) -> f64 {
-    let angle = hinge::angle(x) - one.rest_angle;
-    if angle > PI {
-        angle - TAU
-    } else if angle < -PI {
-        angle + TAU
-    } else {
-        angle
+/// For each chunk of particles, the packs that reach into it, given their corners.
+fn reaching(chunks: usize, packs: impl Iterator<Item = Vec<u32>>) -> Grouped<u32> {
+    let mut pairs: Vec<(u32, u32)> = Vec::new();
+    for (number, corners) in packs.enumerate() {
+        let mut own: Vec<u32> = corners.iter().map(|corner| corner / CHUNK as u32).collect();
+        own.sort_unstable();
+        own.dedup();
+        pairs.extend(own.into_iter().map(|chunk| (chunk, number as u32)));
     }
+    Grouped::new(chunks, pairs.into_iter())
 }
 
 /// The times (s) by which damping of stretch, shear and bend is proportional to their stiffness. A wave of length L has

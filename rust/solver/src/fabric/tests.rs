@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::Mass;
+use crate::kernel::ChunkVectors;
 use crate::material::SpringMaterial;
 use crate::scatter::scattered;
 use boucle_geometry::Mesh;
@@ -68,7 +69,7 @@ fn forces(fabrics: &Fabrics, state: &State) -> Vec<Vector> {
     let mut scratch = FabricScratch::default();
     fabrics.observe(state, &mut scratch);
     let mut sums: Box<ChunkVectors> = Box::new([[0.0; _]; 3]);
-    fabrics.add_forces(0, state, &scratch, &mut sums);
+    fabrics.add_forces(pulp::Scalar::new(), 0, state, &scratch, &mut sums);
     (0..state.len()).map(|i| Vector::from_fn(|axis, _| sums[axis][i])).collect()
 }
 

@@ -8,19 +8,19 @@ use crate::law::number::Number;
 
 /// Numbers side by side, with the instruction set that computes them.
 #[derive(Clone, Copy)]
-pub(super) struct Lanes<S: Simd> {
+pub(crate) struct Lanes<S: Simd> {
     simd: S,
-    pub(super) values: S::f64s,
+    pub(crate) values: S::f64s,
 }
 
 impl<S: Simd> Lanes<S> {
     #[inline(always)]
-    pub(super) fn of(simd: S, values: S::f64s) -> Self {
+    pub(crate) fn of(simd: S, values: S::f64s) -> Self {
         Self { simd, values }
     }
 
     #[inline(always)]
-    pub(super) fn splat(simd: S, value: f64) -> Self {
+    pub(crate) fn splat(simd: S, value: f64) -> Self {
         Self { simd, values: simd.splat_f64s(value) }
     }
 }
@@ -69,17 +69,23 @@ impl<S: Simd> Number for Lanes<S> {
         let is_positive = self.simd.less_than_f64s(zero, sign.values);
         Self { values: self.simd.select_f64s(is_positive, self.values, zero), ..self }
     }
+
+    #[inline(always)]
+    fn where_positive_or(self, sign: Self, other: Self) -> Self {
+        let is_positive = self.simd.less_than_f64s(self.simd.splat_f64s(0.0), sign.values);
+        Self { values: self.simd.select_f64s(is_positive, self.values, other.values), ..self }
+    }
 }
 
 /// A slice as whole vectors; a rest that fills none is left off.
 #[inline(always)]
-pub(super) fn vectors<S: Simd>(slice: &[f64]) -> &[S::f64s] {
+pub(crate) fn vectors<S: Simd>(slice: &[f64]) -> &[S::f64s] {
     S::as_simd_f64s(slice).0
 }
 
 /// A slice as whole vectors; a rest that fills none is left off.
 #[inline(always)]
-pub(super) fn vectors_mut<S: Simd>(slice: &mut [f64]) -> &mut [S::f64s] {
+pub(crate) fn vectors_mut<S: Simd>(slice: &mut [f64]) -> &mut [S::f64s] {
     S::as_mut_simd_f64s(slice).0
 }
 

@@ -17,7 +17,7 @@ mod sums;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use lanes::lane_operators;
+pub(crate) use lanes::{Lanes, lane_operators, vectors, vectors_mut};
 pub(crate) use layout::{Diagonal, GATHERED, GatherSlot, Layout, Place};
 pub(crate) use sums::Sums;
 

@@ -16,6 +16,15 @@ pub(crate) trait Number:
 
     /// `self` where `sign` is above 0, else 0.
     fn where_positive(self, sign: Self) -> Self;
+
+    /// `self` where `sign` is above 0, else the other.
+    fn where_positive_or(self, sign: Self, other: Self) -> Self;
+
+    /// The greater of the two; neither is NaN.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.where_positive_or(self - other, other)
+    }
 }
 
 impl Number for f64 {
@@ -37,5 +46,10 @@ impl Number for f64 {
     #[inline(always)]
     fn where_positive(self, sign: Self) -> Self {
         if sign > 0.0 { self } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn where_positive_or(self, sign: Self, other: Self) -> Self {
+        if sign > 0.0 { self } else { other }
     }
 }

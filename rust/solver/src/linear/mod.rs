@@ -7,9 +7,11 @@ mod dissection;
 mod field;
 mod laplacian;
 mod ldlt;
+mod links;
 mod multigrid;
 #[cfg(test)]
 mod oracle;
+mod pairs;
 #[cfg(test)]
 mod problems;
 
@@ -18,4 +20,6 @@ pub(crate) use conjugate_gradient::{ConjugateGradient, Inverse, Operator, Solved
 pub(crate) use field::Field;
 pub(crate) use laplacian::{Forward, Graph, Laplacian};
 pub(crate) use ldlt::Ldlt;
+pub(crate) use links::{Link, Row};
 pub(crate) use multigrid::Multigrid;
+pub(crate) use pairs::{Block, Pairs};

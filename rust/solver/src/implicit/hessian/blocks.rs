@@ -6,7 +6,6 @@ use pulp::{Simd, WithSimd};
 
 use super::Hessian;
 use crate::contact::ContactMatrix;
-use crate::fabric::FabricProduct;
 use crate::kernel::{CHUNK, Layout};
 use crate::linear::{BlockJacobi, Entries};
 use crate::system::System;
@@ -20,11 +19,9 @@ impl Hessian {
         inverse: &mut BlockJacobi,
     ) {
         let layout = &system.layout;
-        let fabric = FabricProduct { fabrics: &system.fabrics, tangent: &self.fabric };
         inverse.invert(&self.inertia, |first, mut blocks| {
             let entries = blocks.each_mut().map(|entries| &mut **entries);
             self.arch.dispatch(Blocks { hessian: self, layout, first, entries });
-            fabric.add_blocks(first, &mut blocks);
             contacts.add_blocks(first, &mut blocks);
         });
     }
@@ -75,6 +72,9 @@ impl WithSimd for Blocks<'_> {
                     add_springs(tangents, &mut blocks, place..place + 1);
                 }
             }
+        }
+        if !hessian.fabric.is_empty() {
+            hessian.fabric.add_blocks(first, &mut blocks);
         }
     }
 }

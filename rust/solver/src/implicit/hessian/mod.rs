@@ -21,7 +21,6 @@
 //! Source: Choi & Ko 2002 for the clamp.
 
 mod blocks;
-mod diagonal;
 mod product;
 mod tangent;
 
@@ -156,7 +155,7 @@ impl Hessian {
         Product { hessian: self, layout: &system.layout, fabric, contacts, has_bends: true }
     }
 
-    /// The same without bend springs, which are soft and a third of the work, and with hinges that do not know of each other:
+    /// The same without bend springs, which are soft and a third of the work, and with hinges as pairs of particles that do not know of each other:
     /// what smoothing works with.
     pub(super) fn without_bends<'a>(
         &'a self,

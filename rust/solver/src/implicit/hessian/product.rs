@@ -4,11 +4,10 @@ use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::Hessian;
-use super::diagonal::Springs;
 use crate::contact::ContactMatrix;
 use crate::fabric::{FabricProduct, Moments};
 use crate::kernel::{CHUNK, GATHERED, Layout};
-use crate::linear::{Field, Operator};
+use crate::linear::{Field, Link, Operator, Row};
 
 /// The matrix with the layout that says where its springs are, and with the contacts.
 pub(in crate::implicit) struct Product<'a> {
@@ -27,7 +26,8 @@ impl Product<'_> {
 
     fn each_chunk<const SUBTRACT: bool>(&self, p: &Field, out: &mut Field) {
         let arch = self.hessian.arch;
-        let moments = (!self.fabric.is_empty()).then(|| self.fabric.bend(p, self.has_bends));
+        let bends = self.has_bends && !self.fabric.is_empty();
+        let moments = bends.then(|| self.fabric.bend(p));
         let moments = moments.as_ref();
         out.chunks_mut().enumerate().for_each(|(chunk, out)| {
             arch.dispatch(Rows::<SUBTRACT> {
@@ -51,7 +51,7 @@ impl Operator for Product<'_> {
 /// The rows of one chunk of particles.
 struct Rows<'a, const SUBTRACT: bool> {
     product: &'a Product<'a>,
-    /// Of hinges, if they count.
+    /// Of hinges as faces share them, if they count so.
     moments: Option<&'a Moments<'a>>,
     p: &'a Field,
     first: usize,
@@ -75,8 +75,10 @@ impl<const SUBTRACT: bool> WithSimd for Rows<'_, SUBTRACT> {
             if diagonal.is_bend && !has_bends {
                 continue;
             }
-            let springs = Springs { diagonal, tangents, p };
-            springs.add::<S, SUBTRACT>(simd, &own, out.each_mut().map(|axis| &mut **axis));
+            let numbers = tangents.of(0..diagonal.rest_lengths.len());
+            let row = Row { first: diagonal.first, offset: diagonal.offset, numbers, p };
+            let [x, y, z] = &mut out;
+            row.add::<S, SpringLink, SUBTRACT>(simd, &own, [&mut **x, &mut **y, &mut **z]);
         }
         for gather in &layout.gathers[layout.gathers_of_chunk[first / CHUNK].clone()] {
             let slots = gather.slots.clone();
@@ -104,10 +106,7 @@ impl<const SUBTRACT: bool> WithSimd for Rows<'_, SUBTRACT> {
             }
         }
         if !fabric.is_empty() {
-            fabric.add_membrane::<SUBTRACT>(p, first, &mut out);
-        }
-        if let Some(moments) = moments {
-            fabric.add_bending::<SUBTRACT>(moments, first, &mut out);
+            fabric.add::<S, SUBTRACT>(simd, p, moments, first, &mut out);
         }
         let inertia = &hessian.inertia[own.clone()];
         for (out, p) in out.into_iter().zip(&p.0) {
@@ -116,6 +115,29 @@ impl<const SUBTRACT: bool> WithSimd for Rows<'_, SUBTRACT> {
                 *out = if *inertia > 0.0 { *out + own } else { 0.0 };
             }
         }
+    }
+}
+
+/// `alpha n (n·d) + beta d`, of `sqrt(alpha) n` and beta.
+struct SpringLink;
+
+impl Link<4> for SpringLink {
+    #[inline(always)]
+    fn pull<S: Simd>(
+        simd: S,
+        numbers: [S::f32s; 4],
+        [dx, dy, dz]: [S::f32s; 3],
+    ) -> [[S::f32s; 3]; 2] {
+        let [nx, ny, nz, beta] = numbers;
+        let along = simd.add_f32s(
+            simd.add_f32s(simd.mul_f32s(nx, dx), simd.mul_f32s(ny, dy)),
+            simd.mul_f32s(nz, dz),
+        );
+        let force = [(nx, dx), (ny, dy), (nz, dz)].map(
+            #[inline(always)]
+            |(n, d)| simd.add_f32s(simd.mul_f32s(along, n), simd.mul_f32s(beta, d)),
+        );
+        [force; 2]
     }
 }
 

@@ -33,9 +33,8 @@ use crate::linear::chebyshev;
 /// Hinges that one task handles.
 const TASK: usize = 4096;
 
-/// Error of the moments that is left, as a part of them: in forces, and in tangents.
+/// Error of the moments that is left, as a part of them.
 const LEFT: f64 = 0.02;
-const LEFT_IN_TANGENTS: f64 = 0.1;
 
 /// The most Chebyshev steps: slivers are then stiffer than they should be.
 const MOST_STEPS: usize = 24;
@@ -114,15 +113,12 @@ struct Rows {
 #[derive(Debug)]
 pub(super) struct Compliance {
     rows: Vec<Rows>,
-    steps: Steps,
-    steps_in_tangents: Steps,
+    /// `keep` and `gain` of each Chebyshev step.
+    steps: Vec<[f32; 2]>,
     /// The largest eigenvalue of the polynomial.
     largest: f64,
     arch: Arch,
 }
-
-/// `keep` and `gain` of each Chebyshev step.
-type Steps = Vec<[f32; 2]>;
 
 /// Vectors of the Chebyshev steps.
 #[derive(Clone, Debug, Default)]
@@ -184,8 +180,7 @@ impl Compliance {
         };
         Self {
             rows: (0..hinge_count).step_by(LANES).map(pack).collect(),
-            steps: steps(bounds, LEFT),
-            steps_in_tangents: steps(bounds, LEFT_IN_TANGENTS),
+            steps: steps(bounds),
             largest: (1.0 + LEFT) / bounds[0],
             arch: Arch::new(),
         }
@@ -202,39 +197,19 @@ impl Compliance {
     }
 
     /// Fills `moments` (N·m) with what angles (rad) press; both end with as many zeros as make the last pack whole.
-    pub(super) fn moments(
-        &self,
-        angles: &[f64],
-        moments: &mut Vec<f64>,
-        scratch: &mut Scratch<f64>,
-    ) {
-        self.press(angles, moments, scratch, &self.steps);
-    }
-
-    /// The same in tangents: less exactly, since Newton's iterations mend them.
-    pub(super) fn moments_in_tangents(
-        &self,
-        angles: &[f32],
-        moments: &mut Vec<f32>,
-        scratch: &mut Scratch<f32>,
-    ) {
-        self.press(angles, moments, scratch, &self.steps_in_tangents);
-    }
-
-    fn press<N: Number>(
+    pub(super) fn moments<N: Number>(
         &self,
         angles: &[N],
         moments: &mut Vec<N>,
         scratch: &mut Scratch<N>,
-        steps: &Steps,
     ) {
         let Scratch { left, step, last } = scratch;
         for vector in [&mut *moments, &mut *left, &mut *step, &mut *last] {
             vector.resize(angles.len(), N::default());
         }
-        for (number, factors) in steps.iter().enumerate() {
+        for (number, factors) in self.steps.iter().enumerate() {
             let factors = factors.map(N::of);
-            let is_last = number + 1 == steps.len();
+            let is_last = number + 1 == self.steps.len();
             std::mem::swap(step, last);
             let last = &*last;
             let tasks = left.par_chunks_mut(TASK).zip(step.par_chunks_mut(TASK));
@@ -342,12 +317,12 @@ fn widened([low, high]: [f64; 2], compliance: &Matrix3<f64>) -> [f64; 2] {
     [low.min(eigenvalues.min()), high.max(eigenvalues.max())]
 }
 
-/// As many Chebyshev steps as leave a part of the error.
-fn steps([low, high]: [f64; 2], part: f64) -> Steps {
+/// As many Chebyshev steps as leave little of the error.
+fn steps([low, high]: [f64; 2]) -> Vec<[f32; 2]> {
     // Of a matrix that is hardly regular, the steps leave the softest parts out.
     let low = low.max(high / 400.0).min(0.98 * high);
     let root = (high / low).sqrt();
     let factor = (root - 1.0) / (root + 1.0);
-    let count = ((0.5 * part).ln() / factor.ln()).ceil().clamp(1.0, MOST_STEPS as f64);
+    let count = ((0.5 * LEFT).ln() / factor.ln()).ceil().clamp(1.0, MOST_STEPS as f64);
     chebyshev::steps(low as f32, high as f32).take(count as usize).collect()
 }

@@ -172,7 +172,7 @@ impl<'a> FabricProduct<'a> {
         tasks.for_each(|(task, angles)| {
             tangent.arch.dispatch(Turn { product: *self, p, first: task * TASK, angles });
         });
-        fabrics.compliance.moments_in_tangents(angles, moments, steps);
+        fabrics.compliance.moments(angles, moments, steps);
         Moments(bending)
     }
 

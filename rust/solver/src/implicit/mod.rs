@@ -18,7 +18,8 @@
 //! constant while step, stiffness and pins are, and one number for each pair of particles; bend springs are left out.
 //!
 //! Iterations end when one brings the guess nearer by a small part only of what all have, in the norm of H. Mostly two
-//! of Newton are made; BDF2 needs the second where cloth snaps taut.
+//! of Newton are made; BDF2 needs the second where cloth snaps taut. Fabrics are solved further, and look first where the last
+//! step went ([`recalled`]).
 //!
 //! Source: Baraff & Witkin 1998 for the step; Bouaziz et al. 2014 for P.
 
@@ -28,7 +29,9 @@ mod inflated;
 mod momentum;
 mod preconditioner;
 mod pull;
+mod recalled;
 mod smoothed;
+mod solving;
 mod step_error;
 mod substeps;
 mod taut;
@@ -40,7 +43,7 @@ use crate::contact::Contacts;
 use crate::fabric::Fabrics;
 use crate::force::AirScratch;
 use crate::interrupter::Interrupter;
-use crate::linear::{BlockJacobi, ConjugateGradient, Solved, Stop};
+use crate::linear::{BlockJacobi, ConjugateGradient, Field, Solved, Stop};
 use crate::settings::LinearSolver;
 use crate::state::{Coordinates, State};
 use crate::system::{Motion, Observed, Rate, System};
@@ -51,6 +54,7 @@ use inflated::Inflated;
 use momentum::Pieces;
 use preconditioner::Preconditioner;
 use smoothed::{Scratch, Smoothed};
+use solving::Solving;
 pub(crate) use substeps::Accuracy;
 use taut::Taut;
 
@@ -60,21 +64,6 @@ pub(crate) enum Rule {
     ImplicitEuler,
     Bdf2,
 }
-
-/// Iterations of Newton at the most; the limiters mend what a snap leaves after them.
-const NEWTON: usize = 3;
-
-/// Conjugate gradients stop early, where the error of the step is larger than theirs. With 0.15 a strip of 256 rows that
-/// falls and swings is 44 mm (root mean square) off a fine reference after a second, with this 25 mm, with 0.02 19 mm; and
-/// what they leave looks like an error of the step, and asks for more of them.
-const STOP: Stop = Stop { tolerance: 0.06, least_iterations: 1, most_iterations: 200 };
-
-/// The same where hinges bend: what smoothing and P leave of stiff bending looks like weight, and a cantilever of thirty
-/// cells droops 6 % too far with the tolerance above, 2 % with this.
-const STOP_OF_FABRIC: Stop = Stop { tolerance: 0.01, ..STOP };
-
-/// No more Newton iterations once one gains no more than the square of this part of all.
-const LEFT: f64 = 0.2;
 
 /// Iterations of Newton in contact: friction needs the pressure of one before it, or of the step before.
 const LEAST_IN_CONTACT: usize = 3;
@@ -99,6 +88,9 @@ pub(crate) struct Implicit {
     pulling: pull::Scratch,
     pieces: Pieces,
     gradients: ConjugateGradient,
+    /// The direction in which a step is looked for first, if there is one.
+    recalled: Field,
+    has_recalled: bool,
     /// Base position, and the target in the place of velocities.
     base: State,
     /// The present guess.
@@ -139,6 +131,8 @@ impl Implicit {
             taut,
             pieces: Pieces::new(count, springs),
             gradients: ConjugateGradient::new(count, interrupter),
+            recalled: Field::zeros(count),
+            has_recalled: false,
             base: State::zeros(count),
             at: State::zeros(count),
             residual: State::zeros(count),
@@ -180,13 +174,18 @@ impl Implicit {
         h: f64,
     ) {
         let formula = self.formula(h);
+        let iterations = self.iterations;
         self.predict(system, state, formula, h);
+        if !system.fabrics.is_empty() {
+            self.recall(system, state);
+        }
         if contacts.is_empty() {
             self.approach(system, contacts, formula.step, h);
         } else {
             self.approach_and_touch(system, contacts, formula.step, h);
         }
-        self.memory.error += self.error(state, contacts, h);
+        let weight = Solving::of(system).weight_of_error(self.iterations - iterations);
+        self.memory.error += weight * self.error(state, contacts, h);
         self.memory.before.copy_from(state);
         self.memory.step = h;
         if self.rule == Rule::Bdf2 {
@@ -200,8 +199,9 @@ impl Implicit {
 
     /// Newton's iterations from the present guess.
     fn approach(&mut self, system: &System, contacts: &mut Contacts, step: f64, h: f64) {
+        let solving = Solving::of(system);
         let [least, most] = match (contacts.count(), contacts.remembers()) {
-            (0, _) => [1, NEWTON],
+            (0, _) => [1, solving.newton],
             (_, true) => [LEAST_IN_CONTACT, MOST_IN_CONTACT],
             (_, false) => [LEAST_IN_NEW_CONTACT, MOST_IN_CONTACT],
         };
@@ -212,7 +212,8 @@ impl Implicit {
                 break;
             }
             self.linearize(system, contacts, step, h);
-            let solved = self.solve(system, contacts, step);
+            let solved = self.solve(system, contacts, step, solving.stop);
+            self.has_recalled = false;
             self.iterations += solved.iterations;
             if solved.iterations == 0 {
                 break;
@@ -220,7 +221,7 @@ impl Implicit {
             self.correct(system, contacts, step);
             contacts.press(&self.gradients.solution);
             gained += solved.gained;
-            if iteration >= least && solved.gained <= LEFT * LEFT * gained {
+            if iteration >= least && solved.gained <= solving.left * solving.left * gained {
                 break;
             }
         }
@@ -341,19 +342,19 @@ impl Implicit {
     }
 
     /// Solves for the move from the present guess.
-    fn solve(&mut self, system: &System, contacts: &Contacts, h: f64) -> Solved {
+    fn solve(&mut self, system: &System, contacts: &Contacts, h: f64, stop: Stop) -> Solved {
         let Self { preconditioner, hessian, blocks, scratch, gradients, observed, .. } = self;
+        let first = self.has_recalled.then_some(&self.recalled);
         let matrix = &hessian.without_bends(system, &contacts.matrix);
         let inverse = preconditioner.inverse(system, h);
         let operator = hessian.on(system, &contacts.matrix);
         let contacts = &contacts.matrix;
         let largest = hessian.largest();
         let smoothed = &mut Smoothed { matrix, contacts, blocks, inverse, largest, scratch };
-        let stop = if system.fabrics.is_empty() { STOP } else { STOP_OF_FABRIC };
         if system.air.pressures.is_empty() {
-            return gradients.solve(&operator, smoothed, stop);
+            return gradients.solve(&operator, smoothed, first, stop);
         }
-        gradients.solve(&Inflated::new(operator, system, &observed.air), smoothed, stop)
+        gradients.solve(&Inflated::new(operator, system, &observed.air), smoothed, first, stop)
     }
 
     /// Moves the guess by the solution.

@@ -111,11 +111,16 @@ GRID = 'grid = { size = [0.6, 0.4], vertices = [5, 4], plane = "xz" }'
 
 
 def obj_of(strip, with_uvs):
-    lines = ["v {} {} {}".format(*strip.positions[k : k + 3]) for k in range(0, len(strip.positions), 3)]
+    lines = [
+        "v {} {} {}".format(*strip.positions[k : k + 3]) for k in range(0, len(strip.positions), 3)
+    ]
     if with_uvs:
         lines += [f"vt {strip.uvs[k]} {strip.uvs[k + 1]}" for k in range(0, len(strip.uvs), 2)]
     for face in range(0, len(strip.corners), 4):
-        words = (f"{strip.corners[face + i] + 1}" + (f"/{face + i + 1}" if with_uvs else "") for i in range(4))
+        words = (
+            f"{strip.corners[face + i] + 1}" + (f"/{face + i + 1}" if with_uvs else "")
+            for i in range(4)
+        )
         lines.append("f " + " ".join(words))
     return "\n".join([*lines, ""])
 

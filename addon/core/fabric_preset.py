@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 Fabric = Mapping[str, Any]
@@ -41,14 +41,6 @@ def rows(fabrics: Mapping[str, Fabric]) -> list[Row]:
     """All fabrics, group by group, in alphabetical order."""
     found = (Row(name, one["group"], one["title"]) for name, one in fabrics.items())
     return sorted(found, key=lambda row: (row.group, row.title))
-
-
-def groups(found: Iterable[Row]) -> dict[str, list[Row]]:
-    """Rows by their group."""
-    out: dict[str, list[Row]] = {}
-    for row in found:
-        out.setdefault(row.group, []).append(row)
-    return out
 
 
 def settings(fabric: Fabric, springs: Mapping[str, Any]) -> dict[str, Any]:

@@ -48,7 +48,7 @@ class PresetProperties:
     preset: StringProperty(
         name="Preset",
         description="Name of the preset that the cloth got last",
-        default="", options=FIXED, override=OVERRIDABLE,
+        default="", options={"HIDDEN"}, override=OVERRIDABLE,
     )  # fmt: skip
     preset_digest: StringProperty(
         name="Preset Digest",

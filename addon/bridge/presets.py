@@ -165,8 +165,10 @@ def _digest(settings: bpy.types.PropertyGroup) -> str:
 
 def _text(name: str) -> str:
     if name not in own_names():
-        near = [row.name for row in shipped()] + own_names()
-        raise Refusal(f'there is no preset "{name}": known are {", ".join(near)}')
+        if native.problem():
+            raise Refusal(native.problem())
+        known = [row.name for row in shipped()] + own_names()
+        raise Refusal(f'there is no preset "{name}": known are {", ".join(known)}')
     try:
         return (_own_folder() / (name + preset.SUFFIX)).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:

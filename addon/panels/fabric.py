@@ -64,8 +64,8 @@ class BOUCLE_PT_fabric_bending(_FabricPanel, Panel):
         """Lay out."""
         settings = context.object.boucle
         column = self.column(settings)
-        for name in ("bend_warp_micro", "bend_weft_micro"):
-            column.prop(settings, name)
+        column.prop(settings, "bend_warp_micro", text="Warp")
+        column.prop(settings, "bend_weft_micro", text="Weft")
 
 
 class BOUCLE_PT_fabric_damping(_FabricPanel, Panel):

@@ -89,13 +89,15 @@ def draw_popover(layout: bpy.types.UILayout) -> None:
 
 def draw_choice(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     """The menu, called by the preset that the cloth got last; a star says that settings were changed since."""
-    split = layout.split(factor=0.4)
+    row = layout.row()
+    split = row.split(factor=0.4)
+    row.separator(factor=2.0)  # where other rows have a dot to set keys
     label = split.row()
     label.alignment = "RIGHT"
     label.label(text="Preset")
     title = settings.preset_title
     text = pgettext_iface(title if title else "Choose...")
-    split.menu(Menus.PRESETS, text=text + (" *" if settings.is_preset_changed else ""))
+    split.menu(Menus.PRESETS, text=f"* {text}" if settings.is_preset_changed else text)
 
 
 CLASSES = (BOUCLE_MT_presets, BOUCLE_PT_presets)

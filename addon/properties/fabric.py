@@ -30,13 +30,13 @@ class FabricProperties:
         default="springs", options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     stretch_warp: FloatProperty(
-        name="Stretch Warp",
+        name="Warp Stretch",
         description="Tensile stiffness along the warp (N/m): the force on a metre of width that would double the length",
         default=2000.0, min=0.0, max=_LARGEST, soft_max=50_000.0, precision=1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     stretch_weft: FloatProperty(
-        name="Stretch Weft",
+        name="Weft Stretch",
         description="Tensile stiffness along the weft, across the warp (N/m)",
         default=2000.0, min=0.0, max=_LARGEST, soft_max=50_000.0, precision=1,
         override=OVERRIDABLE, update=changed,
@@ -47,25 +47,25 @@ class FabricProperties:
         default=False, options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     compression_warp: FloatProperty(
-        name="Compression Warp",
+        name="Warp Compression",
         description="Stiffness against compression along the warp (N/m)",
         default=2000.0, min=0.0, max=_LARGEST, soft_max=50_000.0, precision=1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     compression_weft: FloatProperty(
-        name="Compression Weft",
+        name="Weft Compression",
         description="Stiffness against compression along the weft (N/m)",
         default=2000.0, min=0.0, max=_LARGEST, soft_max=50_000.0, precision=1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     bend_warp: FloatProperty(
-        name="Bending Warp",
+        name="Warp Bending",
         description="Bending stiffness of curvature along the warp (N·m)",
         default=2e-5, min=0.0, max=_LARGEST, soft_max=1e-3, precision=6,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     bend_weft: FloatProperty(
-        name="Bending Weft",
+        name="Weft Bending",
         description="Bending stiffness of curvature along the weft (N·m)",
         default=2e-5, min=0.0, max=_LARGEST, soft_max=1e-3, precision=6,
         override=OVERRIDABLE, update=changed,
@@ -147,13 +147,13 @@ class MicroProperties:
     """Bending stiffness in millionths, as laboratories tell it; a field shows six decimals at most. It keeps nothing itself."""
 
     bend_warp_micro: FloatProperty(
-        name="Bending Warp",
+        name="Warp Bending",
         description="Bending stiffness of curvature along the warp (µN·m, millionths of a N·m): how broadly it folds",
         min=0.0, max=1e15, soft_max=1000.0, precision=2, step=100,
         get=_read_bend_warp, set=_write_bend_warp, options=FIXED, override=OVERRIDABLE,
     )  # fmt: skip
     bend_weft_micro: FloatProperty(
-        name="Bending Weft",
+        name="Weft Bending",
         description="Bending stiffness of curvature along the weft (µN·m, millionths of a N·m)",
         min=0.0, max=1e15, soft_max=1000.0, precision=2, step=100,
         get=_read_bend_weft, set=_write_bend_weft, options=FIXED, override=OVERRIDABLE,

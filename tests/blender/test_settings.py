@@ -69,7 +69,7 @@ class Layout:
 
     column = row = box = split = grid_flow = _inner
 
-    def separator(self):
+    def separator(self, **_):
         """A gap."""
 
     def menu(self, name, text="", **_):
@@ -209,7 +209,7 @@ def test_every_setting_is_drawn_and_the_safe_time_step_is_shown(blender):
     result = blender.run(draw_everything)
     drawn = result["drawn"]
     assert set(drawn) >= DESIGN_NAMES - {"enabled", "bend_warp", "bend_weft"} | {
-        "bend_warp_micro", "bend_weft_micro", "Denim", "Denim *", "Choose...", "Knit",
+        "bend_warp_micro", "bend_weft_micro", "Denim", "* Denim", "Choose...", "Knit",
         "damping_shear", "air_damping", "wind_velocity", "wind_air_density", "time_step",
         "allow_unstable", "boucle.bake", "boucle.free_bake", "boucle.reset", "boucle.check",
         "boucle.bake_all", "boucle.enable", "boucle.disable", "boucle.add_cloth", "live_memory",

@@ -44,15 +44,15 @@ STAND = 0.2
 """Radius (m) of the round plates that they lie on."""
 HEIGHT = 0.5
 COLUMNS = 3
-STEP = (1.35, 2.1)
+STEP = (1.15, 2.0)
 """From one cloth to the next, across and back (m)."""
 CELLS = 47
 FRAMES = 60
-PIXELS = (1260, 730)
+PIXELS = (1260, 800)
 SAMPLES = 32
 TILT = math.radians(55.0)
 """How far the camera, which sees in parallel, is turned up from looking straight down."""
-VIEW = 3.95
+VIEW = 3.4
 """What it sees from left to right (m)."""
 README = SCRIPTS / "pictures" / "fabrics.jpg"
 
@@ -71,7 +71,7 @@ def build_stand(bpy: Any, x: float, y: float, material: Any) -> Any:
     )
     plate = bpy.context.object
     plate.modifiers.new("Collision", "COLLISION")
-    plate.collision.thickness_outer, plate.collision.cloth_friction = 0.001, 50.0
+    plate.collision.thickness_outer, plate.collision.cloth_friction = 0.003, 50.0
     bpy.ops.mesh.primitive_cylinder_add(
         vertices=32, radius=0.02, depth=HEIGHT - 0.03, location=(x, y, 0.5 * (HEIGHT - 0.03))
     )
@@ -84,7 +84,7 @@ def drape(bpy: Any, piece: Piece, x: float, y: float, cells: int, frames: int) -
     """A square of a fabric, just above its plate, baked until it hangs."""
     bpy.ops.boucle.add_cloth(
         vertices_x=cells + 1, vertices_y=cells + 1, size_x=SIDE, size_y=SIDE, plane="xy",
-        pins=set(), location=(x, y, HEIGHT + 0.004),
+        pins=set(), location=(x, y, HEIGHT + 0.007),
     )  # fmt: skip
     cloth, settings = bpy.context.object, bpy.context.object.boucle
     settings.thickness = 0.125 * SIDE / cells
@@ -111,7 +111,7 @@ def write_name(bpy: Any, text: str, x: float, y: float, material: Any) -> None:
     curve.body, curve.size, curve.align_x = text, 0.105, "CENTER"
     curve.materials.append(material)
     name = bpy.data.objects.new("Name", curve)
-    name.location, name.rotation_euler = (x, y - 0.62, 0.0), (TILT, 0.0, 0.0)
+    name.location, name.rotation_euler = (x, y - 0.62, 0.05), (TILT, 0.0, 0.0)
     bpy.context.scene.collection.objects.link(name)
 
 

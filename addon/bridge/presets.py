@@ -17,7 +17,7 @@ from ..core.fabric_preset import Row
 from ..core.preset import Preset, Schema, Setting
 from ..core.refusal import Refusal
 from ..core.scene_json import decimal
-from . import rest
+from . import shape
 
 _PACKAGE = __package__.rpartition(".")[0]
 
@@ -63,7 +63,7 @@ def apply(obj: bpy.types.Object, name: str) -> None:
     if fabric is None:
         values = preset.parse(name, _text(name), schema(obj)).values
     else:
-        springs = native.fabric_springs(name, rest.mean_edge(obj))
+        springs = native.fabric_springs(name, shape.mean_edge(obj))
         values = fabric_preset.settings(fabric, springs)
         if _is_thickness_of_preset(settings):
             settings.thickness = fabric_preset.thickness(fabric)

@@ -13,9 +13,8 @@ import bmesh
 import bpy
 
 from .._identifiers import REST_ATTRIBUTE, REST_COUNT
-from ..core import mesh_check, points
+from ..core import points
 from ..core.points import Affine, Points
-from ..core.refusal import Refusal
 from . import mesh_arrays
 
 
@@ -34,21 +33,6 @@ def positions(mesh: bpy.types.Mesh) -> Points:
     if is_displaced(mesh) and not mesh.is_editmode:
         return mesh_arrays.read_vectors(mesh.attributes[REST_ATTRIBUTE])
     return mesh_arrays.read_positions(mesh)
-
-
-def mean_edge(obj: bpy.types.Object) -> float:
-    """The mean length (m, world space) of the edges of the rest shape.
-
-    Raises:
-        Refusal: The mesh has no edges, or they have no length.
-    """
-    ends = mesh_arrays.edges(obj.data)
-    world = points.transform(positions(obj.data), mesh_arrays.world_matrix(obj), "d")
-    lengths = mesh_check.edge_lengths([float(value) for value in world], ends)
-    total = sum(lengths)
-    if not total > 0.0:
-        raise Refusal(f'"{obj.name}" has edges of {total:g} m: a cloth with faces is needed')
-    return total / len(lengths)
 
 
 def transform(mesh: bpy.types.Mesh, matrix: Affine) -> None:

@@ -179,3 +179,40 @@ def test_a_fabric_sets_both_models_and_the_thickness_that_nobody_chose(blender):
     assert result["labels"] == [
         ["", False], ["Denim", False], ["Denim", True], ["Linen", False], ["Mine", False]
     ]  # fmt: skip
+
+
+def give_a_fabric_to_odd_meshes():
+    import bpy
+    from cloths import add_cloth, addon, refusal_of
+
+    native = addon("native")
+    wanted = native.fabric_springs("denim", 0.125)["bend"]
+    obj = add_cloth(columns=9, rows=5)  # edges of 0.25 m
+    obj.scale = (0.5, 0.5, 0.5)
+    bpy.context.view_layer.update()
+    bpy.ops.boucle.apply_preset(preset="denim")
+    out = [obj.boucle.bend / wanted]
+    # A seam is no edge of the cloth, and the lengths at rest are those of the rest shape key.
+    obj = add_cloth(columns=9, rows=5)
+    obj.data.edges.add(1)
+    obj.data.edges[-1].vertices = (0, 44)
+    obj.shape_key_add(name="Basis")
+    key = obj.shape_key_add(name="Half")
+    for point in key.data:
+        point.co *= 0.5
+    obj.boucle.rest_shape_key = "Half"
+    bpy.ops.boucle.apply_preset(preset="denim")
+    out.append(obj.boucle.bend / wanted)
+    bpy.context.collection.objects.link(
+        empty := bpy.data.objects.new("E", bpy.data.meshes.new("E"))
+    )
+    bpy.context.view_layer.objects.active = empty
+    bpy.ops.boucle.enable()
+    out.append(refusal_of(bpy.ops.boucle.apply_preset, preset="denim"))
+    return out
+
+
+def test_a_fabric_is_made_springs_on_the_edges_that_the_cloth_has_at_rest(blender):
+    scaled, keyed, refused = blender.run(give_a_fabric_to_odd_meshes)
+    assert abs(scaled - 1.0) < 1e-3 and abs(keyed - 1.0) < 1e-3
+    assert '"E" has edges of 0 m' in refused

@@ -54,6 +54,7 @@ class Menus:
     """Menu names."""
 
     ADD = "BOUCLE_MT_add"
+    PRESETS = "BOUCLE_MT_presets"
 
 
 class Panels:
@@ -66,6 +67,11 @@ class Panels:
     STIFFNESS = "BOUCLE_PT_stiffness"
     DAMPING = "BOUCLE_PT_damping"
     DEFORMATION = "BOUCLE_PT_deformation"
+    FABRIC = "BOUCLE_PT_fabric"
+    FABRIC_STIFFNESS = "BOUCLE_PT_fabric_stiffness"
+    FABRIC_BENDING = "BOUCLE_PT_fabric_bending"
+    FABRIC_DAMPING = "BOUCLE_PT_fabric_damping"
+    FABRIC_DEFORMATION = "BOUCLE_PT_fabric_deformation"
     SHAPE = "BOUCLE_PT_shape"
     REST_SHAPE = "BOUCLE_PT_rest_shape"
     PRESSURE = "BOUCLE_PT_pressure"
@@ -90,6 +96,7 @@ class PanelOrder:
     # below Boucle Cloth
     PROBLEMS = 5
     SPRINGS = 10
+    FABRIC = 11
     SHAPE = 20
     COLLISIONS = 30
     TEARING = 40
@@ -98,8 +105,9 @@ class PanelOrder:
     CACHE = 70
     LOOK = 80
     OVERLAY = 90
-    # below Springs
+    # below Springs and Fabric
     STIFFNESS = 10
+    BENDING = 15
     DAMPING = 20
     DEFORMATION = 30
     # below Shape

@@ -7,7 +7,7 @@ Blender the old one may still be there. `problem` says so.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -66,12 +66,28 @@ def problem() -> str:
     return ""
 
 
+@cache
+def fabric_presets() -> Mapping[str, Mapping[str, Any]]:
+    """All named fabrics, see `boucle_core.fabric_presets`; none where the module cannot be used."""
+    return {} if problem() else _core.fabric_presets()
+
+
+def fabric_springs(preset: str, edge: float) -> Mapping[str, Any]:
+    """The springs of a named fabric on a mesh of such edges (m), see `boucle_core.fabric_springs`.
+
+    Raises:
+        BoucleError: There is no such fabric, or the length is not accepted.
+    """
+    return _core.fabric_springs(preset, edge)
+
+
 def simulation(
     scene: str,
     meshes: Sequence[tuple[Any, Any, Any]],
     threads: int = 0,
     colliders: Sequence[tuple[Any, Any, Any]] = (),
     rests: Sequence[Any] = (),
+    uvs: Sequence[Any] = (),
 ) -> Any:
     """A new simulation; see `boucle_core.Simulation`.
 
@@ -82,4 +98,4 @@ def simulation(
     if problem():
         raise Refusal(problem())
     make: Callable[..., Any] = _core.Simulation
-    return make(scene, meshes, threads, colliders, rests)
+    return make(scene, meshes, threads, colliders, rests, uvs)

@@ -97,6 +97,14 @@ def render(folder: Path, pixels: int, samples: int) -> Path:
     return picture
 
 
+def keep(picture: Path, small: Path) -> None:
+    """Keep a picture as a small file beside the README."""
+    from PIL import Image
+
+    with Image.open(picture) as image:
+        image.convert("RGB").save(small, quality=82, optimize=True)
+
+
 def main() -> int:
     """Render, and shrink for the README if asked."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -107,10 +115,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         picture = render(Path(folder) / "blender", chosen.pixels, chosen.samples)
     if chosen.readme:
-        from PIL import Image
-
-        with Image.open(picture) as image:
-            image.convert("RGB").save(README, quality=82, optimize=True)
+        keep(picture, README)
     return 0
 
 

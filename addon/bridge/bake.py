@@ -30,7 +30,6 @@ from . import (
     runtime,
     sampling,
     settings,
-    shape,
     simulation,
     slot,
     vertex_attributes,
@@ -121,9 +120,8 @@ class Bake:
         self._restrict(description)
         met = colliders.Colliders(cloths, scene, self._depsgraph_of(cloths[0]))
         pushing, blowing = Fields(cloths[0], scene), Winds(cloths, description)
-        meshes = [simulation.mesh(obj, self._start(obj)) for obj in cloths]
-        rests = [shape.rest(obj, self._matrix(obj)) for obj in cloths]
-        make = simulation.maker(description, meshes, self.options.threads, met.arrays, rests)
+        given = [simulation.given(obj, self._start(obj), self._matrix(obj)) for obj in cloths]
+        make = simulation.maker(description, given, self.options.threads, met.arrays)
         build = Step(start, make)
         records = self._records(cloths, scene)
         yield build

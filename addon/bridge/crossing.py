@@ -39,7 +39,7 @@ def at_start(obj: bpy.types.Object, scene: bpy.types.Scene) -> list[Problem]:
         ),
     )  # fmt: skip
     for asked, arrays, whom, cure in scenes:
-        vertices = _crossing(obj, asked, start.world, arrays) if asked else []
+        vertices = _crossing(obj, asked, start.given.mesh[0], arrays) if asked else []
         if vertices:
             sentence = (
                 f'"{obj.name}" passes through {whom} at the start frame, at {len(vertices)} vertices: '

@@ -22,10 +22,13 @@ from . import (
     setup_check,
     shape,
     slot,
+    warp,
 )
 
 SAMPLED_ONCE = (
     "stretch", "shear", "bend", "damping", "damping_stretch", "damping_shear", "damping_bend",
+    "stretch_warp", "stretch_weft", "compression_warp", "compression_weft", "bend_warp", "bend_weft",
+    "damping_ratio", "damping_ratio_stretch", "damping_ratio_shear", "damping_ratio_bend",
     "air_damping", "deformation_rate", "density", "mass_per_vertex", "wind_coefficient",
     "wind_air_density", "thickness", "friction", "pin_damping",
 )  # fmt: skip
@@ -69,6 +72,7 @@ def _errors(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]:
     ):
         yield problem._replace(sentence=f'"{obj.name}": {problem.sentence}')
     try:
+        warp.uvs(obj)
         scene_json.describe(
             obj.name, settings.values(obj), settings.world(scene), settings.groups(obj)
         )

@@ -12,7 +12,7 @@ from typing import Any
 import bpy
 
 from ..core import drift
-from . import animation, colliders, fields, mesh_arrays, pins, settings, shape
+from . import animation, colliders, fields, mesh_arrays, pins, settings, shape, warp
 
 FOLLOWED = (
     "pin_strength", "pin_stiffness", *shape.SHRINK, *shape.PRESSURE, "wind_velocity",
@@ -43,6 +43,9 @@ def of(
     faces = mesh_arrays.topology(mesh).digest() if in_full else ""
     steady = shape.steady(obj, description)
     made = drift.record(steady, len(mesh.vertices), faces, fields.record(obj, scene))
+    map_ = warp.uvs(obj) if in_full else None
+    if map_ is not None:
+        made["settings"]["cloth.fabric.uv"] = drift.digest(map_)
     strength = pins.constant_strength(obj)
     if strength < 1.0:
         made["settings"]["cloth.pin_strength"] = strength

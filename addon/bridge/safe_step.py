@@ -49,7 +49,8 @@ def _compute(obj: bpy.types.Object, description: dict, fps: float) -> str:
     description["solver"]["allow_unstable"] = True
     try:
         world = points.transform(rest.positions(obj.data), matrix, "d")
-        return _words(simulation.maker(description, [simulation.mesh(obj, world)])(), fps)
+        given = simulation.given(obj, world, matrix)
+        return _words(simulation.maker(description, [given])(), fps)
     except native.FAILURES as error:
         return sentence_of(error)
 

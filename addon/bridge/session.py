@@ -23,7 +23,6 @@ from . import (
     sampling,
     settings,
     settling,
-    shape,
     simulation,
     slot,
     vertex_attributes,
@@ -77,10 +76,8 @@ def build(obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.De
     to_object = sampling.inverse(obj, matrix)
     met = Colliders([obj], scene, depsgraph)
     world = points.transform(local, matrix, "d")
-    rests = [shape.rest(obj, matrix)]
-    make = simulation.maker(
-        description, [simulation.mesh(obj, world)], colliders=met.arrays, rests=rests
-    )
+    given = simulation.given(obj, world, matrix)
+    make = simulation.maker(description, [given], colliders=met.arrays)
     solver = make()
     pushing, held = Fields(obj, scene), Pins(description, 0, len(obj.data.vertices))
     blowing = Winds([obj], description)

@@ -24,6 +24,7 @@ def problems(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[Problem]
         world = points.transform(rest.positions(obj.data), mesh_arrays.world_matrix(obj), "d")
         yield from _thickness(obj, world)
         yield from _support(obj, scene, world)
+    yield from _fabric(obj)
     yield from _frames(obj, scene)
     yield from _users(obj)
     yield from _stack(obj)
@@ -55,6 +56,25 @@ def _thickness(obj: bpy.types.Object, world: Points) -> Iterator[Problem]:
     ends = mesh_arrays.edges(obj.data)
     for problem in mesh_check.thick_for_edges(world, ends, obj.boucle.thickness):
         yield problem._replace(sentence=f'"{obj.name}": {problem.sentence}')
+
+
+def _fabric(obj: bpy.types.Object) -> Iterator[Problem]:
+    settings = obj.boucle
+    if settings.model != "fabric":
+        return
+    if not settings.is_implicit:
+        yield _warning(
+            f'"{obj.name}" is of fabric, which is stiff, and its integrator is explicit: it takes many '
+            "steps: choose BDF2 or Implicit Euler under Solver"
+        )
+    large = [face for face in obj.data.polygons if face.loop_total > 4]
+    if large:
+        sentence = (
+            f'"{obj.name}": {len(large)} faces have more than four corners: fabric cuts each into triangles '
+            "from one corner, so that it bends unevenly there: triangulate them (Edit Mode, Ctrl T)"
+        )
+        vertices = sorted({vertex for face in large for vertex in face.vertices})
+        yield Problem(Severity.HINT, sentence, vertices)
 
 
 def _support(obj: bpy.types.Object, scene: bpy.types.Scene, world: Points) -> Iterator[Problem]:

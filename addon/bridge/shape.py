@@ -6,11 +6,12 @@ from typing import Any
 
 import bpy
 
-from ..core import points, shape
+from ..core import mesh_check, points, shape
 from ..core.points import Affine, Points
 from ..core.refusal import Refusal
 from ..core.shape import Shape, ShapeGroups
 from . import animation, mesh_arrays, vertex_groups
+from . import rest as kept_rest
 
 SHRINK = ("shrink_min", "shrink_max")
 PRESSURE = ("uniform_pressure_force", "pressure_factor", "target_volume")
@@ -95,6 +96,23 @@ def rest(obj: bpy.types.Object, matrix: Affine) -> Points | None:
     local = points.empty("f", 3 * len(key.data))
     key.data.foreach_get("co", local)
     return points.transform(local, matrix, "d")
+
+
+def mean_edge(obj: bpy.types.Object) -> float:
+    """The mean length (m, world space) of the edges of faces at rest.
+
+    Raises:
+        Refusal: The mesh has no such edges, or they have no length; or its rest shape key is not there.
+    """
+    matrix = mesh_arrays.world_matrix(obj)
+    world = rest(obj, matrix)
+    if world is None:
+        world = points.transform(kept_rest.positions(obj.data), matrix, "d")
+    lengths = mesh_check.edge_lengths([float(value) for value in world], face_edges(obj.data))
+    total = sum(lengths)
+    if not total > 0.0:
+        raise Refusal(f'"{obj.name}" has edges of {total:g} m: a cloth with faces is needed')
+    return total / len(lengths)
 
 
 def at_frame(obj: bpy.types.Object, evaluated: Any, targets: Points | None) -> Shape:

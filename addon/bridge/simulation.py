@@ -3,38 +3,55 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import bpy
 
 from .. import native
 from ..core import scene_json
-from ..core.points import Points
-from . import mesh_arrays
+from ..core.points import Affine, Points
+from . import mesh_arrays, shape, warp
 from .colliders import Arrays
+
+
+class Given(NamedTuple):
+    """What the solver is given of one cloth beside its description."""
+
+    mesh: Arrays
+    """Where it starts (m, world space)."""
+    rest: Points | None
+    """Rest positions (m, world space), float64, flat; None for those that it starts from."""
+    uvs: Points | None
+    """(u, v) of each corner, flat, where the warp follows them."""
+    matrix: Affine
+    """Object to world space."""
 
 
 def maker(
     description: dict[str, Any],
-    meshes: Sequence[Arrays],
+    cloths: Sequence[Given],
     threads: int = 0,
     colliders: Sequence[Arrays] = (),
-    rests: Sequence[Points | None] = (),
 ) -> Callable[[], Any]:
     """A function that builds the simulation; it holds no Blender data and may run on any thread.
 
     Args:
         description: The scene description.
-        meshes: The meshes of its cloths where they start, in its order.
+        cloths: What belongs to its cloths, in its order.
         threads: 0 takes every core.
         colliders: The meshes of its colliders, in its order.
-        rests: Rest positions (m, world space) of its cloths, float64, flat; None for those that they start from.
     """
-    text = scene_json.encode(description)
-    return lambda: native.simulation(text, meshes, threads, colliders, rests)
+    meshes, rests, uvs, matrices = zip(*cloths, strict=True)
+    text = scene_json.encode(scene_json.in_world(description, matrices))
+    return lambda: native.simulation(text, meshes, threads, colliders, rests, uvs)
 
 
-def mesh(obj: bpy.types.Object, start_world: Points) -> Arrays:
-    """The mesh of a cloth that starts from these positions (m, world space), float64, flat."""
+def given(obj: bpy.types.Object, start_world: Points, matrix: Affine) -> Given:
+    """What the solver is given of a cloth that starts from these positions (m, world space), float64, flat.
+
+    Raises:
+        Refusal: A shape key or a UV map is named that the mesh does not have.
+    """
     faces = mesh_arrays.topology(obj.data)
-    return start_world, faces.starts, faces.corners
+    mesh = start_world, faces.starts, faces.corners
+    return Given(mesh, shape.rest(obj, matrix), warp.uvs(obj), matrix)

@@ -9,19 +9,17 @@ from typing import Any, NamedTuple
 import bpy
 
 from ..core import points
-from ..core.points import Points
-from . import registry, runtime, sampling, settings, shape
+from . import registry, runtime, sampling, settings, simulation
 from .colliders import Arrays, Colliders
+from .simulation import Given
 
 
 class Start(NamedTuple):
     """A scene description and the meshes that belong to it."""
 
     description: dict[str, Any]
-    world: Points
-    """Positions that it starts from (m, world space), float64, flat."""
-    rest: Points | None
-    """Rest positions (m, world space), where they are others."""
+    given: Given
+    """What belongs to the cloth."""
     colliders: Sequence[Arrays]
 
 
@@ -37,7 +35,7 @@ def sample(obj: bpy.types.Object, scene: bpy.types.Scene) -> Start:
         matrix = sampling.object_matrix(obj, depsgraph)
         world = points.transform(sampling.targets(obj, depsgraph), matrix, "d")
         met = Colliders([obj], scene, depsgraph)
-        return Start(description, world, shape.rest(obj, matrix), met.arrays)
+        return Start(description, simulation.given(obj, world, matrix), met.arrays)
 
 
 @contextmanager

@@ -12,7 +12,8 @@ from ..core.refusal import Refusal
 
 _NOT_KEPT = frozenset({
     "enabled", "uuid", "bake_record", "take_index", "show_thickness", "use_live", "overlay", "overlay_range",
-    "overlay_minimum", "overlay_maximum", "overlay_opacity", *(f"use_{one.key}" for one in quantity.ALL),
+    "overlay_minimum", "overlay_maximum", "overlay_opacity", "bend_warp_micro", "bend_weft_micro",
+    *(f"use_{one.key}" for one in quantity.ALL),
 })  # fmt: skip
 """Settings that are not of the simulation."""
 

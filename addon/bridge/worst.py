@@ -39,8 +39,7 @@ def edges(obj: bpy.types.Object, scene: bpy.types.Scene) -> list[Edge]:
     if solver is None:
         start = start_pose.sample(obj, scene)
         alone = scene_json.without_contact(start.description)
-        mesh = simulation.mesh(obj, start.world)
-        solver = simulation.maker(alone, [mesh], rests=[start.rest])()
+        solver = simulation.maker(alone, [start.given])()
     lengths = worst.rest_lengths(solver.read_springs(0))
     world = points.transform(positions, mesh_arrays.world_matrix(obj), "d")
     return worst.edges(world, mesh_arrays.edges(obj.data), lengths)

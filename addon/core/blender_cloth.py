@@ -135,6 +135,7 @@ def _group_differs(group: str) -> Callable[[Reading], bool]:
 
 
 ROWS = (
+    Row("model", _always("springs"), "Model"),
     Row("mass_mode", _always("density"), "Mass"),
     Row("density", density, "Vertex Mass"),
     Row("mass_per_vertex", _as_it_is("mass"), "Vertex Mass"),  # for whoever switches to it

@@ -16,6 +16,10 @@ _WORDS = {
     "stretch": "stretch stiffness",
     "shear": "shear stiffness",
     "bend": "bend stiffness",
+    "stretch_warp": "stretch stiffness along the warp",
+    "stretch_weft": "stretch stiffness along the weft",
+    "bend_warp": "bend stiffness along the warp",
+    "bend_weft": "bend stiffness along the weft",
     "mass_per_vertex": "mass per vertex",
     "name": "",
     "self": "self collision",
@@ -38,6 +42,7 @@ _VERTICES = {
     "shrink.weights": "weights of the shrink group",
     "pressure.weights": "weights of the pressure group",
     "sewing.seams": "loose edges",
+    "fabric.uv": "UV map",
     "excluded_from_colliders": "vertices left out of collision with objects",
 }
 """Lists of vertices by the end of their key."""

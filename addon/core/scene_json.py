@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from . import shape
+from .points import Affine
 from .refusal import Refusal
 from .settle import Settling
 from .shape import ShapeGroups, decimal
@@ -19,6 +20,9 @@ QUALITIES = {"draft": 2e-2, "normal": 5e-3, "final": 1e-3}
 
 PIN_DEFAULTS = {"pin_stiffness": 1000.0, "pin_damping": 1.0}
 """What the solver takes where a scene says nothing: bakes from before there were soft pins stay as they are."""
+
+UV = "uv"
+"""The warp of a fabric that follows a UV map."""
 
 Values = Mapping[str, Any]
 """Property names of `object.boucle` and their values."""
@@ -96,6 +100,23 @@ def settling(scene: Mapping[str, Any]) -> Settling:
     return Settling(head.get("settle_frames", 0), head.get("settle_damped", True))
 
 
+def in_world(scene: Mapping[str, Any], matrices: Sequence[Affine]) -> dict[str, Any]:
+    """The same scene with directions that lie in an object's space turned to the world.
+
+    Args:
+        scene: The description of cloths.
+        matrices: Object to world space of each of them.
+    """
+    cloths = [dict(cloth) for cloth in scene["cloth"]]
+    for cloth, matrix in zip(cloths, matrices, strict=True):
+        warp = cloth.get("fabric", {}).get("warp", UV)
+        if warp != UV:
+            rows = (matrix[4 * row : 4 * row + 3] for row in range(3))
+            turned = [sum(a * b for a, b in zip(row, warp, strict=True)) for row in rows]
+            cloth["fabric"] = {**cloth["fabric"], "warp": turned}
+    return {**scene, "cloth": cloths}
+
+
 def encode(scene: Mapping[str, Any]) -> str:
     """The scene as JSON for the solver, which begins with the frames of settling; how long a frame is the speed says."""
     ours = ("settle_frames", "settle_damped", "speed")
@@ -107,7 +128,9 @@ def encode(scene: Mapping[str, Any]) -> str:
 
 
 def _cloth(name: str, values: Values, groups: Groups, meets: bool) -> dict[str, Any]:
-    cloth: dict[str, Any] = {"name": name, "model": "springs", "springs": _springs(values)}
+    model = values.get("model", "springs")
+    described = _fabric(name, values) if model == "fabric" else _springs(values)
+    cloth: dict[str, Any] = {"name": name, "model": model, model: described}
     if values["mass_mode"] == "density":
         cloth["density"] = decimal(values["density"])
     else:
@@ -169,6 +192,25 @@ def _springs(values: Values) -> dict[str, Any]:
         springs["damping"] = decimal(values["damping"])
     words = {key: values[key] for key in ("damping_law", "stiffness_from", "limiter")}
     return {**springs, **words}
+
+
+def _fabric(name: str, values: Values) -> dict[str, Any]:
+    if values["limiter"] == "stiffen":
+        raise Refusal(
+            f'"{name}": the limiter Stiffen is for springs, and the model is Fabric: choose Project, '
+            "Provot or None under Fabric > Deformation"
+        )
+    keys = ["stretch_warp", "stretch_weft", "shear", "bend_warp", "bend_weft"]
+    if values["use_compression"]:
+        keys += ["compression_warp", "compression_weft"]
+    if values["damping_ratio_per_kind"]:
+        keys += ["damping_ratio_stretch", "damping_ratio_shear", "damping_ratio_bend"]
+    else:
+        keys.append("damping_ratio")
+    fabric = {key: decimal(values[key]) for key in (*keys, "air_damping", "deformation_rate")}
+    warp = values["warp"]
+    fabric["warp"] = UV if warp == UV else [float(axis == warp) for axis in "xyz"]
+    return {**fabric, "limiter": values["limiter"]}
 
 
 def _solver(name: str, values: Values) -> dict[str, Any]:

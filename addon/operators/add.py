@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bmesh
 import bpy
-from bpy.app.translations import pgettext_n, pgettext_tip
+from bpy.app.translations import pgettext_n
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 from bpy.types import Context, Operator
 from bpy_extras.object_utils import AddObjectHelper, object_data_add
@@ -14,6 +14,7 @@ from .._identifiers import Operators
 from ..bridge import cloth, presets
 from ..core.preset import NONE
 from ..core.refusal import Refusal
+from .polling import is_in_object_mode
 
 PIN_GROUP = "Pin"
 _AXES = {
@@ -27,10 +28,11 @@ _choices: list[tuple[str, str, str]] = []
 
 
 def _offered(_operator: Operator, _context: Context | None) -> list[tuple[str, str, str]]:
-    names = [*presets.shipped_names(), *presets.own_names()]
+    named = [(row.name, row.title) for row in presets.shipped()]
+    named += [(name, name) for name in presets.own_names()]
     _choices[:] = [
         (NONE, pgettext_n("None"), pgettext_n("The settings of a new cloth")),
-        *((name, name, presets.description(name)) for name in names),
+        *((name, title, presets.description(name)) for name, title in named),
     ]
     return _choices
 
@@ -88,10 +90,7 @@ class BOUCLE_OT_add_cloth(AddObjectHelper, Operator):
     @classmethod
     def poll(cls, context: Context) -> bool:
         """Only in Object Mode: a cloth is an object of its own."""
-        if context.mode != "OBJECT":
-            cls.poll_message_set(pgettext_tip("Leave Edit Mode first"))
-            return False
-        return True
+        return is_in_object_mode(cls, context)
 
     def execute(self, context: Context) -> set[str]:
         """Make the mesh, the object, its pin group and its settings."""

@@ -12,6 +12,7 @@ from mathutils import Matrix, Vector
 from .._identifiers import Operators
 from ..bridge import cloth, collider_setup
 from ..core import starter_shapes
+from .polling import is_in_object_mode
 from .starters import mesh_of
 
 _PART_OF_EDGE = 0.125
@@ -37,8 +38,7 @@ class BOUCLE_OT_drape(Operator):
     @classmethod
     def poll(cls, context: Context) -> bool:
         """Only in Object Mode, above something."""
-        if context.mode != "OBJECT":
-            cls.poll_message_set(pgettext_tip("Leave Edit Mode first"))
+        if not is_in_object_mode(cls, context):
             return False
         if not _below(context):
             cls.poll_message_set(

@@ -8,19 +8,14 @@ from bpy.types import Context, Operator
 from .._identifiers import Operators
 from ..bridge import dressing
 from ..core import fabric
-from .polling import has_cloth
+from .polling import has_cloth, is_in_object_mode
 
 _ITEMS = tuple((one.key, one.label, one.description) for one in fabric.ALL)
 
 
 def _can_dress(cls: type, context: Context) -> bool:
     """Whether the active cloth can get a material now."""
-    if not has_cloth(cls, context):
-        return False
-    if context.object.mode != "OBJECT":
-        cls.poll_message_set("Leave Edit Mode first")
-        return False
-    return True
+    return has_cloth(cls, context) and is_in_object_mode(cls, context)
 
 
 class BOUCLE_OT_add_material(Operator):

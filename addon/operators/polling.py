@@ -19,6 +19,14 @@ def has_mesh(cls: type, context: Context) -> bool:
     return is_own(cls, obj)
 
 
+def is_in_object_mode(cls: type, context: Context) -> bool:
+    """Whether no object is edited: what is added or dressed then is an object of its own."""
+    if context.mode != "OBJECT":
+        cls.poll_message_set(pgettext_tip("Leave Edit Mode first"))
+        return False
+    return True
+
+
 def has_cloth(cls: type, context: Context) -> bool:
     """Whether the active object is a Boucle cloth of this file."""
     if not has_mesh(cls, context):

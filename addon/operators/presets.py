@@ -56,7 +56,7 @@ class BOUCLE_OT_apply_preset(_OfPreset, Operator):
 
 
 class BOUCLE_OT_save_preset(_OfPreset, Operator):
-    """Keep the springs, the mass and the solver of this cloth as a preset"""
+    """Keep the model, the mass, the friction and the solver of this cloth as a preset"""
 
     bl_idname = Operators.SAVE_PRESET
     bl_label = "Save Preset"

@@ -16,6 +16,7 @@ from ..bridge import cloth, collider_setup
 from ..core import starter_shapes
 from ..core.starter_shapes import Grid
 from .add import PIN_GROUP
+from .polling import is_in_object_mode
 
 TABLE_GAP = 0.002
 """What is kept free above a table, beside the cloth's thickness (m)."""
@@ -32,10 +33,7 @@ class _Starter(AddObjectHelper):
     @classmethod
     def poll(cls, context: Context) -> bool:
         """Only in Object Mode: a cloth is an object of its own."""
-        if context.mode != "OBJECT":
-            cls.poll_message_set("Leave Edit Mode first")
-            return False
-        return True
+        return is_in_object_mode(cls, context)
 
     def count(self, length: float) -> int:
         """Vertices along a length (m)."""

@@ -4,6 +4,7 @@ from . import (
     cache,
     cloth,
     collisions,
+    fabric,
     field_weights,
     forces,
     look,
@@ -21,6 +22,7 @@ from . import (
 _PARENTS = (
     cloth,
     springs,
+    fabric,
     shape,
     collisions,
     forces,

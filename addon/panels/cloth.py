@@ -8,7 +8,7 @@ import bpy
 from bpy.types import Context, Panel
 
 from .._identifiers import Operators, Panels
-from .presets import draw_popover
+from .presets import draw_choice, draw_popover
 
 _DENSE = 20_000
 """Vertices from which on a proxy is offered in place of the mesh itself."""
@@ -66,6 +66,8 @@ class BOUCLE_PT_cloth(PhysicsPanel, Panel):
         if settings.is_baked:
             row.operator(Operators.FREE_BAKE)
         column = self.column(settings)
+        column.row().prop(settings, "model", expand=True)
+        draw_choice(column, settings)
         column.prop(settings, "mass_mode")
         if settings.mass_mode == "density":
             column.prop(settings, "density", text="Density (kg/m²)")

@@ -1,11 +1,49 @@
-"""The popover of presets in the head panel: choose, save, delete."""
+"""The presets: a menu of all in the head panel, and a popover in its header that also saves and deletes one's own."""
 
 from __future__ import annotations
 
 import bpy
-from bpy.types import Context, Panel
+from bpy.app.translations import pgettext_iface
+from bpy.types import Context, Menu, Panel
 
-from .._identifiers import Operators, Panels
+from .._identifiers import Menus, Operators, Panels
+
+_COLUMNS = 4
+"""Of the menu: with fewer it is higher than a small screen."""
+
+
+class BOUCLE_MT_presets(Menu):
+    """Fabrics by their groups, then one's own presets; type to search"""
+
+    bl_idname = Menus.PRESETS
+    bl_label = "Presets"
+    bl_options = {"SEARCH_ON_KEY_PRESS"}
+
+    def draw(self, context: Context) -> None:
+        """Lay out in columns of about the same height."""
+        settings = context.object.boucle
+        groups: dict[str, list[tuple[str, str]]] = {}
+        for line in settings.shipped_presets.splitlines():
+            name, group, title = line.split("\t")
+            groups.setdefault(group, []).append((name, title))
+        self.layout.operator_context = "EXEC_DEFAULT"
+        row = self.layout.row()
+        height = sum(len(group) + 2 for group in groups.values()) / _COLUMNS
+        column, filled = row.column(), 0.0
+        for group, presets in groups.items():
+            if filled and filled + 0.5 * len(presets) > height:
+                column, filled = row.column(), 0.0
+            filled += len(presets) + 2
+            column.label(text=group)
+            for name, title in presets:
+                column.operator(Operators.APPLY_PRESET, text=title).preset = name
+            column.separator()
+        own = settings.own_presets.splitlines()
+        if own:
+            column = row.column()
+            column.label(text="Own Presets")
+        for name in own:
+            column.operator(Operators.APPLY_PRESET, text=name, translate=False).preset = name
 
 
 class BOUCLE_PT_presets(Panel):
@@ -23,14 +61,13 @@ class BOUCLE_PT_presets(Panel):
         return obj is not None and obj.type == "MESH" and obj.boucle.enabled
 
     def draw(self, context: Context) -> None:
-        """Lay out as Blender's own presets are."""
+        """Lay out as Blender's own presets are, but for the fabrics: they are too many for one column."""
         settings = context.object.boucle
         layout = self.layout
+        layout.menu(Menus.PRESETS, text="Fabrics")
         layout.emboss = "PULLDOWN_MENU"
         layout.operator_context = "EXEC_DEFAULT"
         column = layout.column(align=True)
-        for name in settings.shipped_presets.splitlines():
-            column.operator(Operators.APPLY_PRESET, text=name).preset = name
         for name in settings.own_presets.splitlines():
             row = column.row(align=True)
             row.operator(Operators.APPLY_PRESET, text=name, translate=False).preset = name
@@ -50,4 +87,17 @@ def draw_popover(layout: bpy.types.UILayout) -> None:
     layout.popover(panel=Panels.PRESETS, icon="PRESET", text="")
 
 
-CLASSES = (BOUCLE_PT_presets,)
+def draw_choice(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """The menu, called by the preset that the cloth got last; a star says that settings were changed since."""
+    row = layout.row()
+    split = row.split(factor=0.4)
+    row.separator(factor=2.0)  # where other rows have a dot to set keys
+    label = split.row()
+    label.alignment = "RIGHT"
+    label.label(text="Preset")
+    title = settings.preset_title
+    text = pgettext_iface(title if title else "Choose...")
+    split.menu(Menus.PRESETS, text=f"* {text}" if settings.is_preset_changed else text)
+
+
+CLASSES = (BOUCLE_MT_presets, BOUCLE_PT_presets)

@@ -8,7 +8,14 @@ from .._identifiers import PanelOrder, Panels
 from .cloth import PhysicsPanel
 
 
-class BOUCLE_PT_springs(PhysicsPanel, Panel):
+class _SpringPanel(PhysicsPanel):
+    @classmethod
+    def poll(cls, context: Context) -> bool:
+        """Only for a cloth of springs."""
+        return super().poll(context) and context.object.boucle.model == "springs"
+
+
+class BOUCLE_PT_springs(_SpringPanel, Panel):
     """What the springs are, and their stiffness, damping and deformation below"""
 
     bl_idname = Panels.SPRINGS
@@ -22,7 +29,7 @@ class BOUCLE_PT_springs(PhysicsPanel, Panel):
         self.column(settings).prop(settings, "stiffness_from", text="Stiffness")
 
 
-class BOUCLE_PT_stiffness(PhysicsPanel, Panel):
+class BOUCLE_PT_stiffness(_SpringPanel, Panel):
     """Stiffness"""
 
     bl_idname = Panels.STIFFNESS
@@ -38,7 +45,7 @@ class BOUCLE_PT_stiffness(PhysicsPanel, Panel):
             column.prop(settings, name)
 
 
-class BOUCLE_PT_damping(PhysicsPanel, Panel):
+class BOUCLE_PT_damping(_SpringPanel, Panel):
     """Damping"""
 
     bl_idname = Panels.DAMPING
@@ -60,7 +67,7 @@ class BOUCLE_PT_damping(PhysicsPanel, Panel):
         column.prop(settings, "air_damping")
 
 
-class BOUCLE_PT_deformation(PhysicsPanel, Panel):
+class BOUCLE_PT_deformation(_SpringPanel, Panel):
     """Deformation"""
 
     bl_idname = Panels.DEFORMATION
@@ -70,12 +77,17 @@ class BOUCLE_PT_deformation(PhysicsPanel, Panel):
 
     def draw(self, context: Context) -> None:
         """Lay out."""
-        settings = context.object.boucle
-        column = self.column(settings)
-        column.prop(settings, "limiter")
-        rate = column.column()
-        rate.active = settings.limiter != "none"
-        rate.prop(settings, "deformation_rate")
+        draw_deformation(self, context)
+
+
+def draw_deformation(panel: PhysicsPanel, context: Context) -> None:
+    """What both models have to say of the elongation."""
+    settings = context.object.boucle
+    column = panel.column(settings)
+    column.prop(settings, "limiter")
+    rate = column.column()
+    rate.active = settings.limiter != "none"
+    rate.prop(settings, "deformation_rate")
 
 
 CLASSES = (BOUCLE_PT_springs, BOUCLE_PT_stiffness, BOUCLE_PT_damping, BOUCLE_PT_deformation)

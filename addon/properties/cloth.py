@@ -8,6 +8,7 @@ from .._identifiers import POINTER
 from .cache import CacheProperties
 from .changes import FIXED, OVERRIDABLE, switched
 from .collisions import CollisionProperties
+from .fabric import FabricProperties, MicroProperties, WarpProperties
 from .field_weights import BOUCLE_PG_field_weights, FieldWeightProperties
 from .forces import ForceProperties
 from .overlay import OverlayProperties
@@ -24,6 +25,9 @@ from .takes import BOUCLE_PG_take, TakeProperties
 
 
 class BOUCLE_PG_cloth(
+    FabricProperties,
+    WarpProperties,
+    MicroProperties,
     SpringProperties,
     ShapeProperties,
     RestProperties,

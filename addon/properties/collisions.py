@@ -9,6 +9,8 @@ from .changes import FIXED, OVERRIDABLE, changed, thickness_switched
 class CollisionProperties:
     """Settings of the contact of one cloth."""
 
+    in_presets = ("friction",)
+
     thickness: FloatProperty(
         name="Thickness",
         description="How far the cloth reaches around its surface (m): nothing comes nearer. Toward an object the Outer "

@@ -21,7 +21,7 @@ class SpringProperties:
     )  # fmt: skip
     shear: FloatProperty(
         name="Shear",
-        description="Stiffness of the springs across faces (N/m)",
+        description="Stiffness against shear (N/m): of the springs across faces, or of the fabric",
         default=100.0, min=0.0, max=_LARGEST, soft_max=10_000.0, precision=2,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
@@ -96,16 +96,16 @@ class SpringProperties:
     )  # fmt: skip
     deformation_rate: FloatProperty(
         name="Deformation Rate",
-        description="Elongation that springs are allowed, as a fraction of their rest length",
+        description="Elongation that edges are allowed, as a fraction of their rest length",
         default=0.10, min=0.0, max=0.999, soft_max=0.5, precision=3, step=1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     limiter: EnumProperty(
         name="Limiter",
-        description="What keeps springs to the deformation rate",
+        description="What keeps edges to the deformation rate",
         items=(
-            ("none", "None", "Nothing: the cloth stretches as its springs allow"),
-            ("stiffen", "Stiffen", "Springs grow stiffer beyond the allowed length (k L/L0)"),
+            ("none", "None", "Nothing: the cloth stretches as its stiffness allows"),
+            ("stiffen", "Stiffen", "Springs grow stiffer beyond the allowed length (k L/L0); not for fabric"),
             ("provot", "Provot", "The ends are moved back (Provot 1995)"),
             (
                 "project",

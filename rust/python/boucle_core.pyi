@@ -50,6 +50,7 @@ class Simulation:
         threads: int = 0,
         colliders: Sequence[tuple[Buffer, Buffer, Buffer]] = (),
         rests: Sequence[Buffer | None] = (),
+        uvs: Sequence[Buffer | None] = (),
     ) -> Simulation:
         """Build a simulation at the scene's first frame, at rest but for the scene's `velocity`.
 
@@ -65,6 +66,8 @@ class Simulation:
                 scene's order: where it stands at the first frame.
             rests: For each cloth its rest positions (m), float32 or float64 (n, 3), or None where they are those that it starts
                 from.
+            uvs: For each cloth the UV coordinates of its corners, float32 or float64 (c, 2), or None: along v runs the warp of
+                a fabric whose `warp` is "uv".
 
         Raises:
             SceneError: A key, a value or a mesh is not accepted.
@@ -294,9 +297,24 @@ def fabric_presets() -> dict[str, dict[str, Any]]:
     """All fabrics that a scene's `preset` may name.
 
     Returns:
-        By name, the keys of rust/scene/presets/fabrics.toml: title, density (kg/m²), thickness (m), stretch_warp, stretch_weft
-        and shear (N/m), bend_warp and bend_weft (N·m), friction, deformation_rate, damping_ratio, source, and, where anybody
-        has measured it, drape_coefficient ([lowest, highest], %).
+        By name, the keys of rust/scene/presets/fabrics.toml: group and title (for menus), density (kg/m²), thickness (m),
+        stretch_warp, stretch_weft and shear (N/m), bend_warp and bend_weft (N·m), friction, deformation_rate, damping_ratio,
+        source, and, where anybody has measured it, drape_coefficient ([lowest, highest], %).
+    """
+
+def fabric_springs(preset: str, edge: float) -> dict[str, Any]:
+    """The springs that a scene's `preset` under `[cloth.springs]` makes of a fabric.
+
+    Args:
+        preset: A name out of `fabric_presets`.
+        edge: The mean length (m) of the mesh's edges: the stiffness of bend springs depends on it.
+
+    Returns:
+        Keys of `[cloth.springs]`: stretch, shear and bend (N/m), damping_stretch, damping_shear and damping_bend (N·s/m),
+        damping_law, stiffness_from, deformation_rate.
+
+    Raises:
+        SceneError: There is no such fabric, or the length is not above 0.
     """
 
 def point_triangle_distance(points: Buffer, out: Buffer) -> None:

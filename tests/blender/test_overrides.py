@@ -57,11 +57,13 @@ def override_everything(folder):
                 if p.type == "POINTER" and p.fixed_type.identifier == "Collection"]  # fmt: skip
     for name in pointers:
         setattr(own.boucle, name, ground)
-    given = {}
+    paths = []
     for path, settings, prop, value in others(own.boucle):
         if path != "enabled":  # ends the cloth
             setattr(settings, prop.identifier, value)
-            given[path] = plain(getattr(settings, prop.identifier))
+            paths.append(path)
+    # Only now: some stand for another setting, in other units.
+    given = {path: plain(own.boucle.path_resolve(path)) for path in paths}
     bpy.ops.wm.save_as_mainfile(filepath=shot)
     bpy.ops.wm.open_mainfile(filepath=shot)
     own = next(one for one in bpy.data.objects if one.library is None and one.name == "Costume")

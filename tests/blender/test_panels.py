@@ -1,8 +1,9 @@
 """The panels as a tree: Blender's words, in Blender's order, closed where Blender's own cloth is."""
 
 ORDER = {
-    "BOUCLE_PT_cloth": ["Springs", "Shape", "Collisions", "Forces", "Solver", "Cache"],
+    "BOUCLE_PT_cloth": ["Springs", "Fabric", "Shape", "Collisions", "Forces", "Solver", "Cache"],
     "BOUCLE_PT_springs": ["Stiffness (N/m)", "Damping (N·s/m)", "Deformation"],
+    "BOUCLE_PT_fabric": ["Stiffness (N/m)", "Bending (µN·m)", "Damping", "Deformation"],
     "BOUCLE_PT_collisions": ["Object Collisions", "Self Collisions"],
 }
 CLOSED = {"Shape", "Collisions", "Forces", "Cache", "Advanced"}
@@ -37,6 +38,7 @@ def test_panels_stand_in_their_order_whatever_is_registered_first(new_blender):
     assert closed >= CLOSED
     assert not closed & {
         "Springs",
+        "Fabric",
         "Stiffness (N/m)",
         "Damping (N·s/m)",
         "Object Collisions",

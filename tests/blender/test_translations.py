@@ -78,10 +78,9 @@ def collect():
     for value, place in literals(package):
         if isinstance(value, ast.Constant) and isinstance(value.value, str):
             add(value.value, place)
-    presets = addon("bridge.presets")
-    for name in presets.shipped_names():
-        add(name, "presets")
-        add(presets.description(name), "presets")
+    for row in addon("bridge.presets").shipped():
+        add(row.group, "fabrics")
+        add(row.title, "fabrics")
     translations = addon("translations")
     unknown = {
         prop.translation_context

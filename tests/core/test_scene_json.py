@@ -204,3 +204,48 @@ def test_the_solver_takes_groups():
     solver.read_positions(0, after)
     assert after[:3] == before[:3] and after[9:] == before[9:]
     assert after[3:9] != before[3:9]
+
+
+FABRIC = {
+    "model": "fabric", "stretch_warp": 3000.0, "stretch_weft": 1500.0, "bend_warp": 2.000000049e-5,
+    "bend_weft": 1e-5, "use_compression": False, "compression_warp": 10.0, "compression_weft": 20.0,
+    "damping_ratio": 0.02, "damping_ratio_per_kind": False, "damping_ratio_stretch": 0.1,
+    "damping_ratio_shear": 0.2, "damping_ratio_bend": 0.3, "warp": "z", "warp_uv_map": "",
+}  # fmt: skip
+TURNED = (0.0, 0.0, 2.0, 7.0, 0.0, 1.0, 0.0, 7.0, -2.0, 0.0, 0.0, 7.0)
+"""The local z axis to x, and twice as long."""
+
+
+def test_fabric_has_the_keys_of_its_table_and_the_solver_takes_them():
+    cloth = described(**FABRIC)["cloth"][0]
+    assert cloth["model"] == "fabric" and "springs" not in cloth
+    assert cloth["fabric"] == {
+        "stretch_warp": 3000.0, "stretch_weft": 1500.0, "shear": 100.0, "bend_warp": 2e-5, "bend_weft": 1e-5,
+        "damping_ratio": 0.02, "air_damping": 0.001, "deformation_rate": 0.1, "warp": [0.0, 0.0, 1.0],
+        "limiter": "project",
+    }  # fmt: skip
+    own = {**FABRIC, "use_compression": True, "damping_ratio_per_kind": True}
+    fabric = described(**own)["cloth"][0]["fabric"]
+    assert fabric["compression_weft"] == 20.0 and fabric["damping_ratio_bend"] == 0.3
+    assert "damping_ratio" not in fabric
+    for values in (FABRIC, own):
+        scene = described(**{**values, "integrator": "bdf2"})
+        simulation(scene).advance()
+
+
+def test_a_warp_along_an_axis_turns_with_its_object_and_a_map_does_not():
+    def turned(**changes):
+        scene = described(**{**FABRIC, **changes})
+        return scene_json.in_world(scene, [TURNED])["cloth"][0]
+
+    assert turned()["fabric"]["warp"] == [2.0, 0.0, 0.0]
+    assert turned(warp="x")["fabric"]["warp"] == [0.0, 0.0, -2.0]
+    assert turned(warp="uv")["fabric"]["warp"] == "uv"
+    springs = described()
+    assert scene_json.in_world(springs, [TURNED]) == springs
+
+
+def test_the_limiter_that_is_for_springs_is_refused_for_fabric():
+    assert described(limiter="stiffen")["cloth"][0]["springs"]["limiter"] == "stiffen"
+    with pytest.raises(Refusal, match="Stiffen is for springs"):
+        described(**FABRIC, limiter="stiffen")

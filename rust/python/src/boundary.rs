@@ -74,6 +74,11 @@ pub(crate) fn raise_internal(py: Python<'_>, message: &str) -> PyErr {
     }
 }
 
+/// JSON as Python objects.
+pub(crate) fn parse_json<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
+    py.import("json")?.call_method1("loads", (text,))
+}
+
 /// A refusal of an argument.
 pub(crate) fn refuse(py: Python<'_>, message: impl Into<String>) -> PyErr {
     raise(py, &Error::Input(message.into()))

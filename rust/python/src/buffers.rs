@@ -18,7 +18,7 @@ pub(crate) fn positions(
 ) -> PyResult<Vec<Vector>> {
     let py = array.py();
     let buffer = contiguous(array, what)?;
-    let vertex_count = rows_of_three(py, &buffer, what, count)?;
+    let vertex_count = rows_of(py, 3, &buffer, what, count)?;
     if vertex_count > MAX_VERTICES {
         let accepted = format!("at most {MAX_VERTICES}");
         return Err(refuse(
@@ -28,6 +28,18 @@ pub(crate) fn positions(
     }
     let numbers = floats(py, &buffer, what)?;
     Ok(numbers.chunks_exact(3).map(Vector::from_column_slice).collect())
+}
+
+/// So many UV coordinates out of a float32 or float64 buffer of shape (n, 2), or flat with 2 n numbers.
+pub(crate) fn uvs(array: &Bound<'_, PyAny>, what: &str, count: usize) -> PyResult<Vec<[f64; 2]>> {
+    let py = array.py();
+    let buffer = contiguous(array, what)?;
+    rows_of(py, 2, &buffer, what, Some(count))?;
+    let numbers = floats(py, &buffer, what)?;
+    if let Some(number) = numbers.iter().find(|number| !number.is_finite()) {
+        return Err(refuse(py, format!("{what} hold {number}; accepted: finite numbers")));
+    }
+    Ok(numbers.chunks_exact(2).map(|uv| [uv[0], uv[1]]).collect())
 }
 
 /// So many numbers out of a float32 or float64 buffer of shape (n,).
@@ -114,7 +126,7 @@ pub(crate) fn indices(array: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<u32>
 pub(crate) fn write_rows(array: &Bound<'_, PyAny>, rows: &[Vector]) -> PyResult<()> {
     let py = array.py();
     let buffer = contiguous(array, "out")?;
-    rows_of_three(py, &buffer, "out", Some(rows.len()))?;
+    rows_of(py, 3, &buffer, "out", Some(rows.len()))?;
     let numbers = rows.iter().flat_map(|row| [row.x, row.y, row.z]);
     if let Ok(buffer) = buffer.as_typed::<f32>() {
         return fill(py, buffer, numbers.map(|number| number as f32));
@@ -162,16 +174,17 @@ fn contiguous(array: &Bound<'_, PyAny>, what: &str) -> PyResult<PyUntypedBuffer>
     Ok(buffer)
 }
 
-/// How many rows of three numbers a buffer holds.
-fn rows_of_three(
+/// How many rows of so many numbers a buffer holds.
+fn rows_of(
     py: Python<'_>,
+    width: usize,
     buffer: &PyUntypedBuffer,
     what: &str,
     count: Option<usize>,
 ) -> PyResult<usize> {
     let rows = match *buffer.shape() {
-        [rows, 3] => Some(rows),
-        [numbers] if numbers % 3 == 0 => Some(numbers / 3),
+        [rows, numbers] if numbers == width => Some(rows),
+        [numbers] if numbers % width == 0 => Some(numbers / width),
         _ => None,
     };
     match (rows, count) {
@@ -179,7 +192,7 @@ fn rows_of_three(
         (Some(rows), Some(count)) if rows == count => Ok(rows),
         (_, count) => {
             let n = count.map_or("n".to_owned(), |count| count.to_string());
-            Err(wrong_shape(py, buffer, what, &format!("({n}, 3), or flat")))
+            Err(wrong_shape(py, buffer, what, &format!("({n}, {width}), or flat")))
         }
     }
 }

@@ -6,7 +6,7 @@
 //! - `simulation`: the class `Simulation`; `access`: what is inside it
 //! - `interrupter`: the class `Interrupter`
 //! - `bake`: the function `bake`
-//! - `presets`: the function `fabric_presets`
+//! - `presets`: the functions `fabric_presets` and `fabric_springs`
 //! - `geometry`: distances, collisions and intersections of many features at once
 //!
 //! The surface is written down in `boucle_core.pyi`. Where the environment holds `BOUCLE_TEST_HOOKS` when the module is
@@ -34,6 +34,7 @@ fn boucle_core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<interrupter::Interrupter>()?;
     module.add_function(wrap_pyfunction!(bake::bake, module)?)?;
     module.add_function(wrap_pyfunction!(presets::fabric_presets, module)?)?;
+    module.add_function(wrap_pyfunction!(presets::fabric_springs, module)?)?;
     module.add_function(wrap_pyfunction!(geometry::point_triangle_distance, module)?)?;
     module.add_function(wrap_pyfunction!(geometry::edge_edge_distance, module)?)?;
     module.add_function(wrap_pyfunction!(geometry::point_triangle_impact, module)?)?;

@@ -15,15 +15,20 @@ pub(crate) fn of_cloths(
     py: Python<'_>,
     scene: &Scene,
     meshes: &[MeshArrays<'_>],
-    rests: &[Option<Bound<'_, PyAny>>],
+    [rests, uvs]: [&[Option<Bound<'_, PyAny>>]; 2],
 ) -> PyResult<Vec<RestMesh>> {
     if meshes.len() != scene.cloth.len() {
         let (given, wanted) = (meshes.len(), scene.cloth.len());
         return Err(refuse(py, format!("meshes holds {given}; accepted: {wanted}, one a cloth")));
     }
-    if rests.len() > meshes.len() {
-        let (given, wanted) = (rests.len(), meshes.len());
-        return Err(refuse(py, format!("rests holds {given}; accepted: {wanted}, one a cloth")));
+    for (name, given) in [("rests", rests.len()), ("uvs", uvs.len())] {
+        if given > meshes.len() {
+            let wanted = meshes.len();
+            return Err(refuse(
+                py,
+                format!("{name} holds {given}; accepted: {wanted}, one a cloth"),
+            ));
+        }
     }
     let mut rest_meshes = Vec::with_capacity(meshes.len());
     for (number, (cloth, arrays)) in scene.cloth.iter().zip(meshes).enumerate() {
@@ -43,7 +48,15 @@ pub(crate) fn of_cloths(
             }
             _ => None,
         };
-        rest_meshes.push(RestMesh { mesh, positions, rest, grid: None });
+        let uvs = match uvs.get(number) {
+            Some(Some(uvs)) => {
+                let what = format!("UV coordinates of cloth \"{}\"", cloth.name);
+                let count = mesh.faces().map(<[u32]>::len).sum();
+                Some(buffers::uvs(uvs, &what, count)?)
+            }
+            _ => None,
+        };
+        rest_meshes.push(RestMesh { mesh, positions, rest, uvs, grid: None });
     }
     Ok(rest_meshes)
 }

@@ -7,7 +7,7 @@ use boucle_scene::{Assembly, Scene};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::boundary::{compute, raise, refuse};
+use crate::boundary::{compute, parse_json, raise, refuse};
 use crate::buffers;
 use crate::interrupter::Interrupter;
 use crate::meshes::{self, MeshArrays};
@@ -30,7 +30,9 @@ impl Simulation {
         clippy::needless_pass_by_value,
         reason = "Python's sequences are taken apart into them"
     )]
-    #[pyo3(signature = (scene, meshes, threads = 0, colliders = Vec::new(), rests = Vec::new()))]
+    #[pyo3(signature = (
+        scene, meshes, threads = 0, colliders = Vec::new(), rests = Vec::new(), uvs = Vec::new()
+    ))]
     fn new(
         py: Python<'_>,
         scene: &str,
@@ -38,10 +40,11 @@ impl Simulation {
         threads: i64,
         colliders: Vec<MeshArrays<'_>>,
         rests: Vec<Option<Bound<'_, PyAny>>>,
+        uvs: Vec<Option<Bound<'_, PyAny>>>,
     ) -> PyResult<Self> {
         let scene = compute(py, || Scene::from_json(scene))?;
         let threads = thread_count(py, threads)?;
-        let rest_meshes = meshes::of_cloths(py, &scene, &meshes, &rests)?;
+        let rest_meshes = meshes::of_cloths(py, &scene, &meshes, [&rests, &uvs])?;
         let colliders = meshes::of_colliders(py, &scene, &colliders)?;
         let assembly = compute(py, || Assembly::new(&scene, rest_meshes, colliders, threads))?;
         Ok(Self { assembly: Some(assembly) })
@@ -379,11 +382,6 @@ pub(crate) fn thread_count(py: Python<'_>, threads: i64) -> PyResult<usize> {
     let count = usize::try_from(threads).map_err(|_| refused())?;
     boucle_scene::limits::threads(count).map_err(|error| raise(py, &error))?;
     Ok(count)
-}
-
-/// JSON as Python objects.
-pub(crate) fn parse_json<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
-    py.import("json")?.call_method1("loads", (text,))
 }
 
 /// A cloth's springs as native-endian bytes.

@@ -1,10 +1,12 @@
 //! From a scene and rest meshes to a simulation whose pins and colliders follow the scene.
 
 use boucle_geometry::{Mesh, Vector};
-use boucle_solver::{Certificate, Cloth, Collision, Settings, Simulation, Tailoring};
+use boucle_solver::{Certificate, Cloth, Fabric, Settings, Simulation, Tailoring, Warp};
 
 use crate::collider::{ColliderTrack, RestCollider};
-use crate::description::{Choice, ClothDescription, FabricDescription, Grid, Model, Scene};
+use crate::description::{
+    Choice, ClothDescription, FabricDescription, Grid, Model, Scene, WarpDescription,
+};
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::pins::PinTrack;
@@ -19,6 +21,8 @@ pub struct RestMesh {
     pub positions: Vec<Vector>,
     /// Its rest positions (m), if they are others.
     pub rest: Option<Vec<Vector>>,
+    /// (u, v) of each corner of each face, as faces list them, where it has any.
+    pub uvs: Option<Vec<[f64; 2]>>,
     /// The grid it was made from, by which pins may be named.
     pub grid: Option<Grid>,
 }
@@ -181,20 +185,23 @@ fn cloth(
     let cloths: Vec<&str> = scene.cloth.iter().map(|cloth| cloth.name.as_str()).collect();
     let collision = description.collision.collision(
         &scene.collision,
+        description.named_fabric(),
         [&colliders, &cloths],
         rest.positions.len(),
         &format!("{at}.collision"),
     )?;
-    let friction = description.collision.friction.is_none();
-    let friction = description.named_fabric().filter(|_| friction).map(|preset| preset.friction);
-    let collision = collision.map(|collision| Collision {
-        friction: friction.unwrap_or(collision.friction),
-        ..collision
-    });
     let mass = description.mass();
-    let fabric = (description.model == Model::Fabric).then_some(&description.fabric);
-    let material =
-        fabric.map_or_else(|| description.springs.material(), FabricDescription::material);
+    let (fabric, material) = match description.model {
+        Model::Springs => {
+            let shape = rest.rest.as_ref().unwrap_or(&rest.positions);
+            let edge = description.springs.named().map_or(1.0, |_| mean_edge(&rest.mesh, shape));
+            (None, description.springs.material(edge))
+        }
+        Model::Fabric => {
+            let fabric = fabric(&description.fabric, rest.uvs, &format!("{at}.fabric"))?;
+            (Some(fabric), description.fabric.material())
+        }
+    };
     let loose_edges = rest.mesh.loose_edges().to_vec();
     let (shape, start) = match rest.rest {
         Some(shape) => (shape, Some(rest.positions)),
@@ -202,7 +209,7 @@ fn cloth(
     };
     let made = Cloth::from_mesh(&description.name, rest.mesh, shape, &mass, material, pins)
         .and_then(|cloth| match fabric {
-            Some(fabric) => cloth.of_fabric(fabric.fabric()),
+            Some(fabric) => cloth.of_fabric(fabric),
             None => Ok(cloth),
         })
         .and_then(|cloth| match start {
@@ -221,6 +228,29 @@ fn cloth(
     let pressure = pressure.map(|pressure| pressure.pressure(scene.scene.frames[0]));
     let pin_material = description.pin_material();
     Ok(Cloth { collision, pin_weights, pin_material, pressure, ..cloth })
+}
+
+/// A fabric whose warp follows the UV coordinates of its mesh, if it is to.
+fn fabric(description: &FabricDescription, uvs: Option<Vec<[f64; 2]>>, at: &str) -> Result<Fabric> {
+    let fabric = description.fabric();
+    match (description.warp, uvs) {
+        (Some(WarpDescription::Uv), Some(uvs)) => Ok(Fabric { warp: Warp::Mapped(uvs), ..fabric }),
+        (Some(WarpDescription::Uv), None) => Err(Error::input(format!(
+            "{at}.warp = \"uv\", but its mesh has no UV coordinates; accepted: a mesh with some at \
+             every corner (in OBJ files vt, and faces of v/vt), or a direction such as [0, 1, 0]"
+        ))),
+        _ => Ok(fabric),
+    }
+}
+
+/// The mean length (m) of a mesh's edges; 1 if there are none.
+fn mean_edge(mesh: &Mesh, positions: &[Vector]) -> f64 {
+    let edges = mesh.edges();
+    let lengths = edges.iter().filter_map(|&[a, b]| {
+        Some((positions.get(a as usize)? - positions.get(b as usize)?).norm())
+    });
+    let mean = lengths.sum::<f64>() / edges.len() as f64;
+    if mean > 0.0 { mean } else { 1.0 }
 }
 
 /// The solver's refusals of a step, told with the table they come from.

@@ -251,6 +251,9 @@ fn digest(
             }
         }
     }
+    for number in meshes.iter().flat_map(|rest| rest.uvs.iter().flatten().flatten()) {
+        hash.update(&number.to_le_bytes());
+    }
     for pair in meshes.iter().flat_map(|rest| rest.mesh.loose_edges()) {
         for vertex in pair {
             hash.update(&vertex.to_le_bytes());

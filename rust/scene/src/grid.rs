@@ -54,6 +54,21 @@ impl Grid {
             .collect()
     }
 
+    /// (u, v) of each corner of each quad: the grid is the unit square, u grows along rows, v along columns.
+    #[must_use]
+    pub fn uvs(&self) -> Vec<[f64; 2]> {
+        let [columns, rows] = self.vertices;
+        let [width, height] = [columns - 1, rows - 1].map(f64::from);
+        let quad = |row: u32, column: u32| {
+            [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[across, along]| {
+                [f64::from(column + across) / width, f64::from(row + along) / height]
+            })
+        };
+        (0..rows - 1)
+            .flat_map(|row| (0..columns - 1).flat_map(move |column| quad(row, column)))
+            .collect()
+    }
+
     /// The vertices of a named corner or edge, in order; `None` for a name not in [`PLACES`].
     #[must_use]
     pub fn place(&self, name: &str) -> Option<Vec<u32>> {
@@ -98,6 +113,18 @@ mod tests {
         assert_eq!(mesh.face_count(), 2);
         let area = mesh.vector_area(0, &grid().positions());
         assert_eq!(area, Vector::new(0.0, -4.0, 0.0));
+    }
+
+    #[test]
+    fn a_grid_is_the_unit_square_of_its_map() {
+        let (mesh, uvs) = (grid().mesh().expect("a good grid"), grid().uvs());
+        let corners: Vec<u32> = mesh.faces().flatten().copied().collect();
+        assert_eq!(corners.len(), uvs.len());
+        for (corner, [u, v]) in corners.iter().zip(uvs) {
+            let position = grid().positions()[*corner as usize];
+            assert!((position.x - 9.0 - 2.0 * u).abs() < 1e-12, "{corner}: {u}");
+            assert!((position.z - 28.0 - 4.0 * v).abs() < 1e-12, "{corner}: {v}");
+        }
     }
 
     #[test]

@@ -15,6 +15,7 @@ mod collider;
 pub mod description;
 mod error;
 mod grid;
+mod lattice;
 pub mod limits;
 pub mod obj;
 mod overrides;
@@ -32,7 +33,8 @@ pub use collider::RestCollider;
 pub use description::Scene;
 pub use error::{Error, Result};
 pub use grid::PLACES;
-pub use preset::{FabricPreset, fabric_presets, fabric_presets_json};
+pub use lattice::Lattice;
+pub use preset::{FabricPreset, fabric_presets, fabric_presets_json, fabric_springs_json};
 pub use samples::Samples;
 
 /// The version of Boucle, as reports name it.

@@ -1,8 +1,9 @@
 //! Wavefront OBJ: rest meshes in and out.
 //!
-//! Of the format, vertices (`v x y z`, further numbers ignored) and faces (`f`, corners as `v`, `v/vt`, `v//vn`, `v/vt/vn`,
-//! counted from 1, or backwards from -1) are read, and lines (`l`), of which those that are no side of a face are loose edges;
-//! names, groups, materials, texture coordinates, normals and points are passed over; anything else is refused with its line. The order of vertices is the file's.
+//! Of the format, vertices (`v x y z`, further numbers ignored), UV coordinates (`vt u v`) and faces (`f`, corners as `v`,
+//! `v/vt`, `v//vn`, `v/vt/vn`, counted from 1, or backwards from -1) are read, and lines (`l`), of which those that are no side
+//! of a face are loose edges; names, groups, materials, normals and points are passed over; anything else is refused with its
+//! line. The order of vertices is the file's.
 //!
 //! Our own reader, because no crate keeps n-gons and the vertex order and names the line that it refuses.
 
@@ -19,14 +20,28 @@ const MAX_LINE: u64 = 1 << 20;
 /// Most corners of all faces together.
 const MAX_CORNERS: usize = 8 * MAX_VERTICES;
 /// Statements that say nothing about the shape of the cloth.
-const PASSED_OVER: [&str; 13] =
-    ["vt", "vn", "vp", "g", "o", "s", "mg", "usemtl", "mtllib", "p", "usemap", "maplib", "lod"];
+const PASSED_OVER: [&str; 12] =
+    ["vn", "vp", "g", "o", "s", "mg", "usemtl", "mtllib", "p", "usemap", "maplib", "lod"];
 
-/// Reads a mesh: its faces and its rest positions (m), Z up.
+/// What a file holds.
+#[derive(Clone, Debug)]
+pub struct Content {
+    /// Its faces and loose edges.
+    pub mesh: Mesh,
+    /// Its rest positions (m), Z up.
+    pub positions: Vec<Vector>,
+    /// (u, v) of each corner of each face, as faces list them, if every corner has one.
+    pub uvs: Option<Vec<[f64; 2]>>,
+}
+
+/// Where a corner has no UV coordinates.
+const NOWHERE: u32 = u32::MAX;
+
+/// Reads a mesh.
 ///
 /// # Errors
 /// [`Error::Input`] naming the line, the vertex or the face that is not accepted.
-pub fn read(source: impl BufRead, up: UpAxis) -> Result<(Mesh, Vec<Vector>)> {
+pub fn read(source: impl BufRead, up: UpAxis) -> Result<Content> {
     let mut reader = Reader { face_starts: vec![0], ..Reader::default() };
     let mut lines = Lines { source, number: 0 };
     while let Some(line) = lines.next_statement()? {
@@ -112,6 +127,9 @@ struct Reader {
     lines: Vec<u32>,
     face_starts: Vec<u32>,
     corners: Vec<u32>,
+    uvs: Vec<[f64; 2]>,
+    /// Of each corner, its number in `uvs`, or `NOWHERE`.
+    corner_uvs: Vec<u32>,
     /// The line of each face.
     face_lines: Vec<u32>,
     /// Both vertices of each part of a line, and the line of the file that it stands in.
@@ -125,6 +143,7 @@ impl Reader {
         match words.next() {
             None => Ok(()),
             Some("v") => self.vertex(words, number),
+            Some("vt") => self.uv(words),
             Some("f") => self.face(words, number),
             Some("l") => self.line(words, number),
             Some(word) if PASSED_OVER.contains(&word) => Ok(()),
@@ -165,6 +184,27 @@ impl Reader {
         Ok(())
     }
 
+    fn uv<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> std::result::Result<(), String> {
+        if self.uvs.len() == MAX_CORNERS {
+            return Err(format!("more than {MAX_CORNERS} vt; accepted: at most so many"));
+        }
+        let mut uv = [0.0; 2];
+        let mut count = 0;
+        for word in words {
+            let value: Option<f64> = word.parse().ok().filter(|value: &f64| value.is_finite());
+            let value = value.ok_or_else(|| format!("\"{}\" is not a number", shorten(word)))?;
+            if count < 2 {
+                uv[count] = value;
+            }
+            count += 1;
+        }
+        if count == 0 {
+            return Err("a vt with no numbers; accepted: 2".to_owned());
+        }
+        self.uvs.push(uv);
+        Ok(())
+    }
+
     fn face<'a>(
         &mut self,
         words: impl Iterator<Item = &'a str>,
@@ -172,7 +212,9 @@ impl Reader {
     ) -> std::result::Result<(), String> {
         let start = self.corners.len();
         for word in words {
-            self.corners.push(self.corner(word)?);
+            let (vertex, uv) = self.corner(word)?;
+            self.corners.push(vertex);
+            self.corner_uvs.push(uv);
         }
         let count = self.corners.len() - start;
         if count < 3 {
@@ -191,8 +233,9 @@ impl Reader {
         words: impl Iterator<Item = &'a str>,
         number: usize,
     ) -> std::result::Result<(), String> {
-        let vertices: Vec<u32> =
-            words.map(|word| self.corner(word)).collect::<std::result::Result<_, _>>()?;
+        let vertices: Vec<u32> = words
+            .map(|word| Ok(self.corner(word)?.0))
+            .collect::<std::result::Result<_, String>>()?;
         if vertices.len() < 2 {
             return Err(format!("a line with {} vertices; accepted: 2 or more", vertices.len()));
         }
@@ -204,8 +247,8 @@ impl Reader {
         Ok(())
     }
 
-    /// The vertex, from 0, of a corner such as `7`, `-1`, `7/2`, `7//3` or `7/2/3`.
-    fn corner(&self, word: &str) -> std::result::Result<u32, String> {
+    /// The vertex and the UV coordinates, from 0, of a corner such as `7`, `-1`, `7/2`, `7//3` or `7/2/3`.
+    fn corner(&self, word: &str) -> std::result::Result<(u32, u32), String> {
         let shown = shorten(word);
         let mut parts = word.split('/');
         let index: i64 = parts
@@ -218,11 +261,11 @@ impl Reader {
             return Err(format!("corner \"{shown}\"; accepted: v, v/vt, v//vn or v/vt/vn"));
         }
         let count = self.positions.len();
-        let distance = usize::try_from(index.unsigned_abs()).unwrap_or(usize::MAX);
+        let uv = word.split('/').nth(1).and_then(|part| place(part.parse().ok()?, self.uvs.len()));
+        let uv = uv.filter(|&uv| uv < MAX_CORNERS).map_or(NOWHERE, |uv| uv as u32);
         // Forwards, a vertex may be named before its line; `finish` refuses those that never come.
-        let vertex = if index < 0 { count.checked_sub(distance) } else { distance.checked_sub(1) };
-        match vertex {
-            Some(vertex) if vertex < MAX_VERTICES => Ok(vertex as u32),
+        match place(index, count) {
+            Some(vertex) if vertex < MAX_VERTICES => Ok((vertex as u32, uv)),
             _ => Err(format!(
                 "corner \"{shown}\" with {count} vertices before it; accepted: counted from 1, or \
                  from -1 backwards"
@@ -230,7 +273,7 @@ impl Reader {
         }
     }
 
-    fn finish(self) -> Result<(Mesh, Vec<Vector>)> {
+    fn finish(self) -> Result<Content> {
         if self.positions.is_empty() {
             return Err(Error::input("there are no vertices; accepted: an OBJ file with v and f"));
         }
@@ -255,8 +298,16 @@ impl Reader {
                  faces"
             )));
         }
-        Ok((mesh, self.positions))
+        let uv = |&number: &u32| self.uvs.get(number as usize).copied();
+        let uvs = self.corner_uvs.iter().map(uv).collect();
+        Ok(Content { mesh, positions: self.positions, uvs })
     }
+}
+
+/// The place, from 0, that a number counts to: from 1 forwards, or from -1 backwards from the last of `count`.
+fn place(number: i64, count: usize) -> Option<usize> {
+    let distance = usize::try_from(number.unsigned_abs()).unwrap_or(usize::MAX);
+    if number < 0 { count.checked_sub(distance) } else { distance.checked_sub(1) }
 }
 
 /// A face's refusal, told with its line and counted as the file counts.

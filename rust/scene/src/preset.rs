@@ -3,7 +3,13 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use boucle_solver::{DampingLaw, StiffnessFrom};
 use serde::{Deserialize, Serialize};
+
+use crate::description::Choice;
+use crate::error::{Error, Result};
+use crate::lattice::Lattice;
+use crate::limits;
 
 /// The file, as it stands in the program.
 const FILE: &str = include_str!("../presets/fabrics.toml");
@@ -12,6 +18,8 @@ const FILE: &str = include_str!("../presets/fabrics.toml");
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FabricPreset {
+    /// Where menus show it.
+    pub group: String,
     /// What menus call it.
     pub title: String,
     /// Areal density (kg/m²).
@@ -50,6 +58,27 @@ pub fn fabric_presets() -> &'static BTreeMap<String, FabricPreset> {
     &PRESETS
 }
 
+/// The springs of a named fabric on a mesh of such edges (m) as a JSON object with the keys of `[cloth.springs]`.
+///
+/// # Errors
+/// [`Error::Input`] for a name that no fabric has, and for a length that is not above 0.
+pub fn fabric_springs_json(preset: &str, edge: f64) -> Result<String> {
+    let Some(fabric) = fabric_presets().get(preset) else {
+        let names: Vec<&str> = fabric_presets().keys().map(String::as_str).collect();
+        return Err(Error::refuse("preset", format!("{preset:?}"), &names.join(", ")));
+    };
+    limits::above_zero("edge", edge, limits::MAX_LENGTH, " m")?;
+    let Lattice { stiffness, damping } = fabric.lattice(edge);
+    let springs = serde_json::json!({
+        "stretch": stiffness[0], "shear": stiffness[1], "bend": stiffness[2],
+        "damping_stretch": damping[0], "damping_shear": damping[1], "damping_bend": damping[2],
+        "damping_law": DampingLaw::Axial.word(),
+        "stiffness_from": StiffnessFrom::Continuum.word(),
+        "deformation_rate": fabric.deformation_rate,
+    });
+    Ok(springs.to_string())
+}
+
 /// All fabrics as a JSON object of objects, whose keys are those of the file.
 #[must_use]
 pub fn fabric_presets_json() -> String {
@@ -80,6 +109,7 @@ mod tests {
                 && (0.0..1.0).contains(&preset.deformation_rate);
             assert!(is_cloth, "{name}: {preset:?}");
             assert!(preset.source.len() > 40, "{name} has no source");
+            assert!(!preset.group.is_empty() && !preset.title.is_empty(), "{name}");
         }
     }
 }

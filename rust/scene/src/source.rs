@@ -11,7 +11,7 @@ use crate::collider::RestCollider;
 use crate::description::{ClothDescription, ColliderDescription, Scene};
 use crate::error::{Error, Result};
 use crate::limits;
-use crate::obj;
+use crate::obj::{self, Content};
 use crate::samples::Samples;
 
 /// Reads a scene file, changed by overrides (`key.path=value`).
@@ -51,17 +51,18 @@ fn rest_mesh(cloth: &ClothDescription, folder: &Path) -> Result<RestMesh> {
     let at = format!("cloth.{}", cloth.name);
     if let Some(grid) = &cloth.grid {
         let mesh = grid.mesh().map_err(|error| Error::input(format!("{at}.grid: {error}")))?;
+        let uvs = cloth.is_mapped().then(|| grid.uvs());
         let (positions, grid) = (grid.positions(), Some(grid.clone()));
-        return Ok(RestMesh { mesh, positions, rest: None, grid });
+        return Ok(RestMesh { mesh, positions, rest: None, uvs, grid });
     }
     let Some(name) = &cloth.mesh else {
         return Err(Error::input(format!("{at}.grid is missing; accepted: it or mesh")));
     };
     let place = format!("{at}.mesh = \"{name}\"");
     let file = open(&folder.join(name)).map_err(|error| error.within(&place))?;
-    let (mesh, positions) =
+    let Content { mesh, positions, uvs } =
         obj::read(BufReader::new(file), cloth.up).map_err(|error| error.within(&place))?;
-    Ok(RestMesh { mesh, positions, rest: None, grid: None })
+    Ok(RestMesh { mesh, positions, rest: None, uvs, grid: None })
 }
 
 /// Reads the rest shape (m) of a cloth that starts from another: a mesh file with the same faces, put where the cloth is.
@@ -69,7 +70,7 @@ fn rest_shape(cloth: &ClothDescription, mesh: &Mesh, folder: &Path) -> Result<Op
     let Some(name) = &cloth.rest else { return Ok(None) };
     let place = format!("cloth.{}.rest = \"{name}\"", cloth.name);
     let file = open(&folder.join(name)).map_err(|error| error.within(&place))?;
-    let (other, mut positions) =
+    let Content { mesh: other, mut positions, .. } =
         obj::read(BufReader::new(file), cloth.up).map_err(|error| error.within(&place))?;
     let [one, two] = [mesh, &other].map(|mesh| (mesh.vertex_count(), mesh.face_count()));
     if one != two {
@@ -113,7 +114,7 @@ fn rest_collider(collider: &ColliderDescription, folder: &Path) -> Result<RestCo
     };
     let place = format!("{at}.mesh = \"{name}\"");
     let file = open(&folder.join(name)).map_err(|error| error.within(&place))?;
-    let (mesh, positions) =
+    let Content { mesh, positions, .. } =
         obj::read(BufReader::new(file), collider.up).map_err(|error| error.within(&place))?;
     let mut rest = RestCollider::of_mesh(mesh, positions, collider)?;
     if let Some(name) = &collider.cache {

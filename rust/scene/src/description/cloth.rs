@@ -1,14 +1,15 @@
 //! `[[cloth]]`: its rest shape, mass, pins and springs.
 
 use boucle_geometry::Vector;
-use boucle_solver::{DampingLaw, Limiter, Mass, PinMaterial, SpringMaterial, StiffnessFrom};
+use boucle_solver::{Mass, PinMaterial};
 use serde::{Deserialize, Serialize};
 
 use super::choice::Choice;
 use super::collision::ClothCollision;
-use super::fabric::FabricDescription;
+use super::fabric::{FabricDescription, WarpDescription};
 use super::pins::Pins;
 use super::shape::{PressureDescription, SewingDescription, Shrink};
+use super::springs::Springs;
 use super::table;
 use crate::error::{Error, Result};
 use crate::limits;
@@ -78,10 +79,19 @@ pub struct ClothDescription {
 }
 
 impl ClothDescription {
-    /// The fabric that it is named after, if it is of fabric and one is named.
+    /// The fabric that its model names, if it names one.
     #[must_use]
     pub fn named_fabric(&self) -> Option<&'static FabricPreset> {
-        if self.model == Model::Fabric { self.fabric.named() } else { None }
+        match self.model {
+            Model::Springs => self.springs.named(),
+            Model::Fabric => self.fabric.named(),
+        }
+    }
+
+    /// Whether its mesh needs UV coordinates.
+    #[must_use]
+    pub fn is_mapped(&self) -> bool {
+        self.model == Model::Fabric && self.fabric.warp == Some(WarpDescription::Uv)
     }
 
     /// The mass as the solver takes it.
@@ -144,8 +154,7 @@ impl ClothDescription {
         let material = self.pin_material();
         material.check().map_err(|error| Error::input(format!("{at}.{error}")))?;
         self.fabric.check(&format!("{at}.fabric"))?;
-        let material = self.springs.material();
-        material.check().map_err(|error| Error::input(format!("{at}.{error}")))
+        self.springs.check(at)
     }
 }
 
@@ -274,94 +283,4 @@ pub enum Model {
 impl Choice for Model {
     const WORDS: &'static [(&'static str, Self)] =
         &[("springs", Self::Springs), ("fabric", Self::Fabric)];
-}
-
-impl Choice for StiffnessFrom {
-    const WORDS: &'static [(&'static str, Self)] =
-        &[("springs", Self::Springs), ("continuum", Self::Continuum)];
-}
-
-impl Choice for DampingLaw {
-    const WORDS: &'static [(&'static str, Self)] =
-        &[("relative", Self::Relative), ("axial", Self::Axial)];
-}
-
-impl Choice for Limiter {
-    const WORDS: &'static [(&'static str, Self)] = &[
-        ("none", Self::None),
-        ("stiffen", Self::Stiffen),
-        ("provot", Self::Provot),
-        ("project", Self::Project),
-    ];
-}
-
-/// `[cloth.springs]`: the mass-spring material.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Springs {
-    /// Stiffness (N/m) of stretch springs.
-    pub stretch: f64,
-    /// Stiffness (N/m) of shear springs.
-    pub shear: f64,
-    /// Stiffness (N/m) of bend springs.
-    pub bend: f64,
-    /// Damping (N·s/m) of every spring whose kind names none.
-    pub damping: f64,
-    /// Damping (N·s/m) of stretch springs.
-    pub damping_stretch: Option<f64>,
-    /// Damping (N·s/m) of shear springs.
-    pub damping_shear: Option<f64>,
-    /// Damping (N·s/m) of bend springs.
-    pub damping_bend: Option<f64>,
-    /// Which relative velocity is damped.
-    #[serde(deserialize_with = "Choice::read", serialize_with = "Choice::write")]
-    pub damping_law: DampingLaw,
-    /// Viscous damping (N·s/m) of every particle by the air.
-    pub air_damping: f64,
-    /// What the stiffnesses are.
-    #[serde(deserialize_with = "Choice::read", serialize_with = "Choice::write")]
-    pub stiffness_from: StiffnessFrom,
-    /// Allowed elongation, as a fraction of the rest length.
-    pub deformation_rate: f64,
-    /// What keeps to it.
-    #[serde(deserialize_with = "Choice::read", serialize_with = "Choice::write")]
-    pub limiter: Limiter,
-}
-
-impl Default for Springs {
-    fn default() -> Self {
-        let material = SpringMaterial::default();
-        let [stretch, shear, bend] = material.stiffness;
-        Self {
-            stretch,
-            shear,
-            bend,
-            damping: 0.0,
-            damping_stretch: None,
-            damping_shear: None,
-            damping_bend: None,
-            damping_law: material.damping_law,
-            air_damping: material.air_damping,
-            stiffness_from: StiffnessFrom::default(),
-            deformation_rate: material.deformation_rate,
-            limiter: material.limiter,
-        }
-    }
-}
-
-impl Springs {
-    /// The material as the solver takes it.
-    #[must_use]
-    pub fn material(&self) -> SpringMaterial {
-        let kinds = [self.damping_stretch, self.damping_shear, self.damping_bend];
-        SpringMaterial {
-            stiffness: [self.stretch, self.shear, self.bend],
-            stiffness_from: self.stiffness_from,
-            damping: kinds.map(|damping| damping.unwrap_or(self.damping)),
-            damping_law: self.damping_law,
-            air_damping: self.air_damping,
-            deformation_rate: self.deformation_rate,
-            limiter: self.limiter,
-        }
-    }
 }

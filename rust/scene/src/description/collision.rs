@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::check_known;
 use crate::error::{Error, Result};
 use crate::limits;
+use crate::preset::FabricPreset;
 
 /// Largest thickness and radius (m) that the solver takes.
 pub(super) const THICKEST: f64 = 100.0;
@@ -24,21 +25,21 @@ pub struct CollisionDescription {
     #[serde(rename = "self")]
     pub with_self: bool,
     /// Radius (m) of the cloth.
-    pub thickness: f64,
+    pub thickness: Option<f64>,
     /// Coefficient of friction.
-    pub friction: f64,
+    pub friction: Option<f64>,
 }
 
 impl Default for CollisionDescription {
     fn default() -> Self {
-        let Collision { with_self, thickness, friction, .. } = Collision::default();
-        Self { enabled: true, with_self, thickness, friction }
+        let with_self = Collision::default().with_self;
+        Self { enabled: true, with_self, thickness: None, friction: None }
     }
 }
 
 impl CollisionDescription {
     pub(super) fn check(&self) -> Result<()> {
-        check_numbers("collision", Some(self.thickness), Some(self.friction))
+        check_numbers("collision", self.thickness, self.friction)
     }
 }
 
@@ -77,14 +78,15 @@ impl ClothCollision {
         Ok(())
     }
 
-    /// How a cloth of so many vertices collides, where `general` holds unless it says otherwise; not at all if `None`.
-    /// `at` is the key of this table.
+    /// How a cloth of so many vertices collides, where `general` holds unless it says otherwise, and then the fabric it is
+    /// named after; not at all if `None`. `at` is the key of this table.
     ///
     /// # Errors
     /// [`Error::Input`] for an excluded vertex that is not there.
     pub(crate) fn collision(
         &self,
         general: &CollisionDescription,
+        preset: Option<&FabricPreset>,
         [colliders, cloths]: [&[&str]; 2],
         vertex_count: usize,
         at: &str,
@@ -103,10 +105,14 @@ impl ClothCollision {
             let number = |name: &String| known.iter().position(|other| other == name);
             names.iter().filter_map(number).map(|number| number as u32).collect()
         };
+        let default = Collision::default();
+        // A fabric is twice as thick as it reaches from its middle.
+        let of_preset = preset.map(|preset| [0.5 * preset.thickness, preset.friction]);
+        let [thickness, friction] = of_preset.unwrap_or([default.thickness, default.friction]);
         Ok(Some(Collision {
             with_self: self.with_self.unwrap_or(general.with_self),
-            thickness: self.thickness.unwrap_or(general.thickness),
-            friction: self.friction.unwrap_or(general.friction),
+            thickness: self.thickness.or(general.thickness).unwrap_or(thickness),
+            friction: self.friction.or(general.friction).unwrap_or(friction),
             excluded_from_self: self.excluded_from_self.clone(),
             excluded_from_colliders: excluded.clone(),
             colliders: self.colliders.as_ref().map(|names| met(names, colliders)),

@@ -2,7 +2,7 @@
 //!
 //! ```toml
 //! [cloth.fabric]                  # used by model = "fabric"
-//! preset = "denim"                # what is missing below, and density and friction of the cloth, are those of this fabric
+//! preset = "denim"                # what is missing below, and density, friction and thickness, are those of this fabric
 //! stretch_warp = 2000.0           # N/m
 //! stretch_weft = 2000.0
 //! compression_warp = 2000.0       # N/m, as stretch if missing
@@ -11,15 +11,18 @@
 //! bend_warp = 2e-5                # N·m
 //! bend_weft = 2e-5
 //! damping_ratio = 0.02            # of the critical, at a wavelength of 0.1 m; or damping_ratio_stretch, _shear, _bend
-//! warp = [0.0, 1.0, 0.0]          # which way the warp runs
+//! warp = [0.0, 1.0, 0.0]          # which way the warp runs; or "uv": where v of the mesh's UV coordinates grows
 //! air_damping = 0.0               # N·s/m, viscous, every particle
 //! deformation_rate = 0.05         # allowed elongation
 //! limiter = "project"             # "none" | "provot" | "project"
 //! ```
 
+use std::fmt;
+
 use boucle_geometry::Vector;
 use boucle_solver::{Fabric, Limiter, SpringMaterial, Warp};
-use serde::{Deserialize, Serialize};
+use serde::de::{Deserializer, SeqAccess, Unexpected, Visitor};
+use serde::{Deserialize, Serialize, Serializer};
 
 use super::choice::{Choice, nearest};
 use crate::error::{Error, Result};
@@ -58,7 +61,7 @@ pub struct FabricDescription {
     /// Damping of bending.
     pub damping_ratio_bend: Option<f64>,
     /// Which way the warp runs.
-    pub warp: Option<[f64; 3]>,
+    pub warp: Option<WarpDescription>,
     /// Viscous damping (N·s/m) of every particle by the air.
     pub air_damping: f64,
     /// Allowed elongation, as a fraction of the rest length.
@@ -75,7 +78,7 @@ impl FabricDescription {
         fabric_presets().get(self.preset.as_ref()?)
     }
 
-    /// The fabric as the solver takes it.
+    /// The fabric as the solver takes it, with the default's warp where that is by a map.
     #[must_use]
     pub fn fabric(&self) -> Fabric {
         let (preset, default) = (self.named(), Fabric::default());
@@ -100,7 +103,10 @@ impl FabricDescription {
                 number(self.bend_weft, |preset| preset.bend_weft, default.bend[1]),
             ],
             damping_ratio: ratios.map(|ratio| ratio.unwrap_or(all)),
-            warp: self.warp.map_or(default.warp, |warp| Warp::Along(Vector::from(warp))),
+            warp: match self.warp {
+                Some(WarpDescription::Along(warp)) => Warp::Along(Vector::from(warp)),
+                Some(WarpDescription::Uv) | None => default.warp,
+            },
         }
     }
 
@@ -117,18 +123,12 @@ impl FabricDescription {
     }
 
     pub(super) fn check(&self, at: &str) -> Result<()> {
-        if let (Some(name), None) = (&self.preset, self.named()) {
-            let names = fabric_presets().keys().map(String::as_str);
-            let accepted = match nearest(name, names.clone()) {
-                Some(near) => format!("one of {} fabrics (did you mean \"{near}\"?)", names.len()),
-                None => names.collect::<Vec<_>>().join(", "),
-            };
-            return Err(Error::refuse(&format!("{at}.preset"), format!("{name:?}"), &accepted));
-        }
-        let warp = self.warp.unwrap_or([0.0, 1.0, 0.0]);
-        limits::vector(&format!("{at}.warp"), &warp, limits::MAX_LENGTH, "")?;
-        if Vector::from(warp).norm() <= 0.0 {
-            return Err(Error::refuse(&format!("{at}.warp"), "[0, 0, 0]", "a direction"));
+        check_preset(&format!("{at}.preset"), self.preset.as_deref())?;
+        if let Some(WarpDescription::Along(warp)) = &self.warp {
+            limits::vector(&format!("{at}.warp"), warp, limits::MAX_LENGTH, "")?;
+            if Vector::from(*warp).norm() <= 0.0 {
+                return Err(Error::refuse(&format!("{at}.warp"), "[0, 0, 0]", "a direction"));
+            }
         }
         if self.limiter == Limiter::Stiffen {
             let accepted = "\"none\", \"provot\", \"project\" (\"stiffen\" stiffens springs)";
@@ -140,5 +140,73 @@ impl FabricDescription {
         };
         self.fabric().check().map_err(named)?;
         self.material().check().map_err(named)
+    }
+}
+
+/// Refuses a name that no fabric has.
+pub(super) fn check_preset(at: &str, name: Option<&str>) -> Result<()> {
+    let Some(name) = name.filter(|&name| !fabric_presets().contains_key(name)) else {
+        return Ok(());
+    };
+    let names = fabric_presets().keys().map(String::as_str);
+    let accepted = match nearest(name, names.clone()) {
+        Some(near) => format!("one of {} fabrics (did you mean \"{near}\"?)", names.len()),
+        None => names.collect::<Vec<_>>().join(", "),
+    };
+    Err(Error::refuse(at, format!("{name:?}"), &accepted))
+}
+
+/// Which way the warp runs, in the words of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WarpDescription {
+    /// Along a direction, as far as it lies in each face.
+    Along([f64; 3]),
+    /// Where v of the mesh's UV coordinates grows.
+    Uv,
+}
+
+impl Serialize for WarpDescription {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        match self {
+            Self::Along(direction) => direction.serialize(serializer),
+            Self::Uv => serializer.serialize_str("uv"),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for WarpDescription {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+        deserializer.deserialize_any(WarpVisitor)
+    }
+}
+
+struct WarpVisitor;
+
+impl<'de> Visitor<'de> for WarpVisitor {
+    type Value = WarpDescription;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("\"uv\", or 3 numbers")
+    }
+
+    fn visit_str<E: serde::de::Error>(self, word: &str) -> std::result::Result<Self::Value, E> {
+        match word {
+            "uv" => Ok(WarpDescription::Uv),
+            other => Err(E::invalid_value(Unexpected::Str(other), &self)),
+        }
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(
+        self,
+        mut list: A,
+    ) -> std::result::Result<Self::Value, A::Error> {
+        let mut direction = Vec::new();
+        while let Some(number) = list.next_element()? {
+            direction.push(number);
+        }
+        match direction.try_into() {
+            Ok(direction) => Ok(WarpDescription::Along(direction)),
+            Err(others) => Err(serde::de::Error::invalid_length(others.len(), &self)),
+        }
     }
 }

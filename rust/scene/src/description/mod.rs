@@ -14,20 +14,22 @@ mod force;
 mod pins;
 mod shape;
 mod solver;
+mod springs;
 mod table;
 mod tree;
 
 pub(crate) use choice::Choice;
 pub use choice::{Later, LaterKeys, NotYet, TearKeys};
-pub use cloth::{ClothDescription, Grid, Model, Plane, Springs, Transform, UpAxis};
+pub use cloth::{ClothDescription, Grid, Model, Plane, Transform, UpAxis};
 pub use collider::{Capsule, ColliderDescription, Cuboid, HalfSpace, Sphere};
 pub use collision::{ClothCollision, CollisionDescription};
-pub use fabric::FabricDescription;
+pub use fabric::{FabricDescription, WarpDescription};
 pub use field::FalloffDescription;
 pub use force::{FieldWord, Force, ForceKind, RegionDescription};
 pub use pins::{Keyframe, PinGroup, Pins};
 pub use shape::{PressureDescription, PressureKeyframe, SewingDescription, Shrink, ShrinkKeyframe};
 pub use solver::{SolverDescription, Substeps};
+pub use springs::Springs;
 pub(crate) use tree::joined;
 
 use boucle_solver::Field;

@@ -38,7 +38,7 @@ fn refused(change: &str) -> String {
 fn a_scene_is_read_with_its_values_and_defaults() {
     let scene = Scene::from_toml(GOOD, &[]).expect("a good scene");
     let cloth = &scene.cloth[0];
-    let material = cloth.springs.material();
+    let material = cloth.springs.material(1.0);
     let bits = |numbers: [f64; 3]| numbers.map(f64::to_bits);
     assert_eq!(bits(material.stiffness), bits([500.0, 100.0, 5.0]));
     assert_eq!(bits(material.damping), bits([1.0, 1.0, 0.5]));
@@ -65,7 +65,7 @@ fn the_words_of_implicit_integrators_are_read_and_bdf2_is_the_default() {
     assert_eq!(scene.solver.integrator, boucle_solver::IntegratorKind::ImplicitEuler);
     assert_eq!(scene.solver.tolerance, Some(1e-3));
     assert_eq!(scene.solver.linear_solver, boucle_solver::LinearSolver::Ldlt);
-    let material = scene.cloth[0].springs.material();
+    let material = scene.cloth[0].springs.material(1.0);
     assert_eq!(material.stiffness_from, boucle_solver::StiffnessFrom::Continuum);
     let bare = "[[cloth]]\nname = \"a\"\ngrid = { size = [1, 1], vertices = [2, 2] }\n";
     let scene = Scene::from_toml(bare, &[]).expect("a good scene");
@@ -337,7 +337,9 @@ fn cloth_collides_unless_it_is_told_not_to() {
         let changes: Vec<String> = changes.iter().map(|&change| change.to_owned()).collect();
         let scene = Scene::from_toml(GOOD, &changes).expect("a good scene");
         let own = &scene.cloth[0].collision;
-        own.collision(&scene.collision, [&["a", "b"], &[]], 20, "at").expect("good vertices")
+        let preset = scene.cloth[0].named_fabric();
+        let names: [&[&str]; 2] = [&["a", "b"], &[]];
+        own.collision(&scene.collision, preset, names, 20, "at").expect("good vertices")
     };
     assert_eq!(collision(&[]), Some(boucle_solver::Collision::default()));
     assert_eq!(collision(&["collision.enabled=false"]), None);
@@ -354,7 +356,20 @@ fn cloth_collides_unless_it_is_told_not_to() {
     assert_eq!(collision(&general), Some(expected.clone()));
     let own = [&general[..], &["cloth.0.collision.friction=0", "cloth.0.collision.self=true"]];
     let expected = boucle_solver::Collision { with_self: true, friction: 0.0, ..expected };
-    assert_eq!(collision(&own.concat()), Some(expected));
+    assert_eq!(collision(&own.concat()), Some(expected.clone()));
+    let named = [&own.concat()[..], &["cloth.0.springs.preset=denim"]].concat();
+    assert_eq!(collision(&named), Some(expected), "what the scene says comes before the preset");
+    let denim = &crate::fabric_presets()["denim"];
+    let expected = boucle_solver::Collision {
+        thickness: 0.5 * denim.thickness,
+        friction: denim.friction,
+        ..boucle_solver::Collision::default()
+    };
+    for model in ["springs", "fabric"] {
+        let named = format!("cloth.0.{model}.preset=denim");
+        let model = format!("cloth.0.model={model}");
+        assert_eq!(collision(&[&named, &model]), Some(expected.clone()));
+    }
 }
 
 #[test]
@@ -363,8 +378,9 @@ fn excluded_vertices_must_be_there() {
         let change = format!("cloth.0.collision.{key}=[3, 20]");
         let scene = Scene::from_toml(GOOD, &[change]).expect("the mesh is not known yet");
         let own = &scene.cloth[0].collision;
-        let met =
-            |count| own.collision(&scene.collision, [&[], &[]], count, "cloth.flag.collision");
+        let met = |count| {
+            own.collision(&scene.collision, None, [&[], &[]], count, "cloth.flag.collision")
+        };
         let error = met(20).expect_err("vertex 20 of 20").to_string();
         assert_eq!(error, format!("cloth.flag.collision.{key}.1 = 20; accepted: 0 to 19"));
         assert!(met(21).is_ok());
@@ -383,7 +399,7 @@ fn a_cloth_may_name_the_colliders_that_it_meets() {
     let scene = read("[\"floor\"]").expect("a good scene");
     let own = &scene.cloth[0].collision;
     let collision =
-        own.collision(&scene.collision, [&["ball", "floor"], &[]], 20, "").expect("good");
+        own.collision(&scene.collision, None, [&["ball", "floor"], &[]], 20, "").expect("good");
     assert_eq!(collision.and_then(|collision| collision.colliders), Some(vec![1]));
     let error = read("[\"flor\"]").expect_err("no such collider").to_string();
     let expected = "cloth.flag.collision.colliders.0 = \"flor\"; accepted: \"ball\", \"floor\"";
@@ -398,7 +414,7 @@ fn a_cloth_may_name_the_cloths_that_it_meets_and_a_wind_the_one_that_it_blows_on
     };
     let scene = read(&["cloth.0.collision.cloths=[\"flag\"]"]).expect("a good scene");
     let own = &scene.cloth[0].collision;
-    let collision = own.collision(&scene.collision, [&[], &["other", "flag"]], 20, "");
+    let collision = own.collision(&scene.collision, None, [&[], &["other", "flag"]], 20, "");
     assert_eq!(collision.expect("good").and_then(|collision| collision.cloths), Some(vec![1]));
     let region = "force.0.region={cloth=\"flag\", vertices=[3]}";
     let scene = read(&[region]).expect("a good scene");
@@ -598,9 +614,74 @@ fn fabrics_that_cannot_be_are_refused() {
         ("cloth.0.fabric.bend_weft=nan", "cloth.flag.fabric.bend_weft (N·m)"),
         ("cloth.0.fabric.deformation_rate=1", "cloth.flag.fabric.deformation_rate"),
         ("cloth.0.fabric.limiter=stiffen", "cloth.flag.fabric.limiter = \"stiffen\""),
-        ("cloth.0.fabric.warp=[0,0,0]", "cloth.flag.fabric.warp = [0, 0, 0]"),
+        ("cloth.0.fabric.warp=[0,0,0]", "cloth.flag.fabric.warp = [0, 0, 0]; accepted: a direc"),
+        ("cloth.0.fabric.warp=vt", "cloth.flag.fabric.warp = \"vt\"; accepted: \"uv\", or 3 numb"),
+        (
+            "cloth.0.fabric.warp=[0,1]",
+            "cloth.flag.fabric.warp = [0, 1]; accepted: \"uv\", or 3 num",
+        ),
+        ("cloth.0.fabric.warp=3", "cloth.flag.fabric.warp = 3; accepted: \"uv\", or 3 numbers"),
+        ("cloth.0.fabric.warp=[0,true,1]", "cloth.flag.fabric.warp.1 = true; accepted: a number"),
+        ("cloth.0.springs.preset=demin", "cloth.flag.springs.preset = \"demin\"; accepted: one of"),
     ] {
         let error = refused(change);
         assert!(error.starts_with(expected), "{error} for {change}");
+    }
+}
+
+#[test]
+fn springs_of_a_named_fabric_take_what_the_scene_does_not_say() {
+    let material = |changes: &[&str]| {
+        let changes: Vec<String> =
+            changes.iter().map(|change| format!("cloth.0.springs.{change}")).collect();
+        let bare = "[[cloth]]\nname = \"a\"\ngrid = { size = [1, 1], vertices = [2, 2] }\n";
+        let scene = Scene::from_toml(bare, &changes).expect("a good scene");
+        (scene.cloth[0].springs.material(0.02), scene.cloth[0].mass())
+    };
+    let denim = &crate::fabric_presets()["denim"];
+    let lattice = denim.lattice(0.02);
+    let (named, mass) = material(&["preset=denim"]);
+    let expected = boucle_solver::SpringMaterial {
+        stiffness: lattice.stiffness,
+        stiffness_from: boucle_solver::StiffnessFrom::Continuum,
+        damping: lattice.damping,
+        damping_law: boucle_solver::DampingLaw::Axial,
+        deformation_rate: denim.deformation_rate,
+        ..boucle_solver::SpringMaterial::default()
+    };
+    assert_eq!(named, expected);
+    assert_eq!(mass, boucle_solver::Mass::Density(denim.density));
+    let (own, _) = material(&[
+        "preset=denim",
+        "shear=7",
+        "damping=0.5",
+        "damping_bend=0.1",
+        "damping_law=relative",
+        "stiffness_from=springs",
+        "deformation_rate=0.2",
+    ]);
+    let [stretch, _, bend] = lattice.stiffness;
+    let expected = boucle_solver::SpringMaterial {
+        stiffness: [stretch, 7.0, bend],
+        damping: [0.5, 0.5, 0.1],
+        deformation_rate: 0.2,
+        ..boucle_solver::SpringMaterial::default()
+    };
+    assert_eq!(own, expected);
+}
+
+#[test]
+fn the_warp_is_a_direction_or_follows_the_map() {
+    for (change, expected) in [
+        ("warp=[1, 0, 2.5]", Some(WarpDescription::Along([1.0, 0.0, 2.5]))),
+        ("warp=uv", Some(WarpDescription::Uv)),
+        ("shear=1", None),
+    ] {
+        let change = format!("cloth.0.fabric.{change}");
+        let scene = Scene::from_toml(GOOD, &[change]).expect("a good scene");
+        assert_eq!(scene.cloth[0].fabric.warp, expected);
+        let json = serde_json::to_value(expected).expect("it has JSON");
+        let again: Option<WarpDescription> = serde_json::from_value(json).expect("what we wrote");
+        assert_eq!(again, expected);
     }
 }

@@ -1,7 +1,7 @@
 use super::*;
 
 fn read_text(text: &str) -> Result<(Mesh, Vec<Vector>)> {
-    read(text.as_bytes(), UpAxis::Z)
+    read(text.as_bytes(), UpAxis::Z).map(|content| (content.mesh, content.positions))
 }
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -27,13 +27,29 @@ fn every_form_of_a_corner_names_its_vertex() {
 }
 
 #[test]
+fn uv_coordinates_are_those_of_the_corners_and_none_where_one_is_missing() {
+    let vt = "vt 0 0\nvt 0.5 0 0.3\nvt 0.5 1\nvt 0.25\n";
+    let uvs = |face: &str| {
+        let text = format!("{SQUARE}{vt}f {face}\n");
+        read(text.as_bytes(), UpAxis::Z).expect(face).uvs
+    };
+    let all = vec![[0.0, 0.0], [0.5, 0.0], [0.5, 1.0], [0.25, 0.0]];
+    assert_eq!(uvs("1/1 2/2 3/3 4/4"), Some(all.clone()));
+    assert_eq!(uvs("1/-4 2/-3/1 3/-2/1 4/4/1"), Some(all.clone()));
+    assert_eq!(uvs("4/1 3/4 2/3 1/1"), Some(vec![all[0], all[3], all[2], all[0]]));
+    for face in ["1 2 3 4", "1/1 2/2 3/3 4", "1//1 2//1 3//1 4//1", "1/1 2/2 3/3 4/5"] {
+        assert_eq!(uvs(face), None, "{face}");
+    }
+}
+
+#[test]
 fn lines_that_are_no_side_of_a_face_are_loose_edges() {
     let text = format!("l 1 3 2\n{SQUARE}f 1 2 3 4\nl -1 -2\nl 2 4\n");
     let (mesh, positions) = read_text(&text).expect("a good file");
     assert_eq!(mesh.loose_edges(), [[0, 2], [1, 3]]);
     let mut written = Vec::new();
     write(&mut written, &mesh, &positions).expect("there is room");
-    assert_eq!(read(&written[..], UpAxis::Z).expect("what we wrote").0, mesh);
+    assert_eq!(read(&written[..], UpAxis::Z).expect("what we wrote").mesh, mesh);
     for (line, expected) in [
         ("l 1", "line 6: a line with 1 vertices; accepted: 2 or more"),
         ("l 1 9", "line 6: the line names vertex 9; accepted: 1 to 4"),
@@ -65,7 +81,7 @@ fn a_face_may_stand_before_its_vertices() {
 #[test]
 fn y_up_is_turned_to_z_up() {
     let text = "v 1 2 3\nv 0 0 0\nv 0 1 0\nf 1 2 3";
-    let (_, positions) = read(text.as_bytes(), UpAxis::Y).expect("a good file");
+    let Content { positions, .. } = read(text.as_bytes(), UpAxis::Y).expect("a good file");
     assert_eq!(positions[0], Vector::new(1.0, -3.0, 2.0));
     assert_eq!(positions[2], Vector::z());
 }
@@ -77,7 +93,8 @@ fn what_is_written_reads_back_to_the_same_bits() {
     let (mesh, positions) = read_text(text).expect("a good file");
     let mut bytes = Vec::new();
     write(&mut bytes, &mesh, &positions).expect("memory has room");
-    assert_eq!(read(bytes.as_slice(), UpAxis::Z).expect("our own file"), (mesh, positions));
+    let again = read(bytes.as_slice(), UpAxis::Z).expect("our own file");
+    assert_eq!((again.mesh, again.positions), (mesh, positions));
 }
 
 #[test]
@@ -98,6 +115,9 @@ fn what_is_wrong_is_refused_with_its_line() {
         ("v 0 0 0\nv 1 0 0\nf 1 2 9223372036854775808\n", "line 3: corner"),
         ("v 0 0 0\nf 1 1.5 2\n", "line 2: corner \"1.5\""),
         ("v 0 0 0\nf 1/a 1 1\n", "line 2: corner \"1/a\""),
+        ("vt 0 a\n", "line 1: \"a\" is not a number"),
+        ("vt inf 0\n", "line 1: \"inf\" is not a number"),
+        ("vt\n", "line 1: a vt with no numbers"),
         ("v 0 0 0\nf 1/1/1/1 1 1\n", "line 2: corner \"1/1/1/1\""),
         ("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n", "vertex 3 (from 0; line 4)"),
         (

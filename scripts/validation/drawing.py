@@ -32,6 +32,7 @@ STYLE = {
     "xtick.color": INK,
     "ytick.color": INK,
     "svg.fonttype": "none",
+    "savefig.dpi": 200,
 }
 PAGE_COLOURS = {INK: "currentColor", REFERENCE: "var(--reference)", RESULT: "var(--result)"}
 SIZE = (3.4, 2.3)

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.special import ellipk, jn_zeros
 
 from . import reference
+from .integrators import WORDS
 from .row import Curve, Finding, Range, Row, Tolerance
 from .specimen import STILL, G, Setting, Specimen, even_grid, grid, ladder
 
@@ -262,10 +263,10 @@ def rows() -> list[Row]:
     """All rows of the chapter."""
     closed = "closed form: "
     falls = "a_free_cloth_falls_as_each_rule_says_and_keeps_its_shape"
+    implicit = "test_a_free_cloth_falls_under_implicit_euler_as_its_closed_form_says"
     found = [
-        Row(CHAPTER, f"free fall, {rule.replace('_', ' ')}", "depth after 1 s", "m", closed + form,
-            "a_free_sheet_falls_as_a_point_does" if rule == "implicit_euler" else falls,
-            partial(fall, rule), EXACT)
+        Row(CHAPTER, f"free fall, {WORDS[rule]}", "depth after 1 s", "m", closed + form,
+            implicit if rule == "implicit_euler" else falls, partial(fall, rule), EXACT)
         for rule, (form, _) in FALLS.items()
     ]  # fmt: skip
     found.append(

@@ -173,7 +173,7 @@ def baked(name: str) -> Baked:
 def cross_section(scene: Baked, axes: Any) -> None:
     """The last frame from the side: cloth as points, meshes and planes as lines."""
     x, _, z = scene.frames[-1].T
-    axes.plot(x, z, ".", ms=1.2, color="C1")
+    axes.plot(x, z, ".", ms=1.2, color="C1", rasterized=True)
     for obstacle in scene.obstacles:
         points = obstacle.at(scene.numbers[-1])
         if obstacle.triangles is not None:

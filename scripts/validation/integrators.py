@@ -46,8 +46,8 @@ GROWING = {"forward_euler": 0.05, "midpoint": 0.2}
 """Rules that no undamped step keeps, and a z of the table at which a thousand steps are looked at."""
 
 EXPLICIT_TEST = "every_rule_has_the_energy_factor_and_the_period_of_the_table"
-IMPLICIT_TEST = "implicit_rules_have_the_energy_factor_and_the_period_of_their_formulas"
-IMPLICIT_ORDER_TEST = "implicit_rules_converge_at_their_order"
+IMPLICIT_TEST = "test_implicit_rules_have_the_energy_factor_and_the_period_of_their_formulas"
+IMPLICIT_ORDER_TEST = "test_implicit_rules_converge_at_their_order"
 
 FACTOR = Tolerance(1e-9)
 """The table has ten digits or more; a force of an elongation of 0.05 m is right to 1e-14."""

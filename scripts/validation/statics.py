@@ -187,7 +187,7 @@ def rows() -> list[Row]:
     closed = "closed form: "
     test = "the_tip_of_a_hanging_chain_drops_by_the_sum_of_its_springs_elongations"
     strips = "a_hanging_strip_drops_as_the_continuum_and_converges_at_order_two"
-    hangs = "a_chain_hangs_as_the_catenary"
+    hangs = "test_a_chain_hangs_as_the_catenary"
     return [
         Row(CHAPTER, "hanging chain: drop of the tip", "drop of the tip", "m",
             closed + "(m g/k) N(N+1)/2", test, partial(chains, False), CHAIN),

@@ -16,6 +16,7 @@ from validation.chapters import CHAPTERS, not_measured, rows_of
 from validation.row import Result, Row
 
 ROOT = Path(__file__).resolve().parent.parent
+README_PICTURE = ROOT / "scripts" / "pictures" / "validation.png"
 HEADINGS = ("row", "quantity", "result", "reference", "error", "tolerance", "")
 
 
@@ -30,6 +31,9 @@ def parser() -> argparse.ArgumentParser:
     lines.add_argument(
         "--tables", metavar="DIR", type=Path, default=reference.TABLES,
         help="where the reference tables are read",
+    )  # fmt: skip
+    lines.add_argument(
+        "--readme", action="store_true", help="also renew the small copy of the overview in scripts/pictures"
     )  # fmt: skip
     return lines
 
@@ -84,6 +88,8 @@ def main(words: Sequence[str] | None = None) -> int:
 
     report.write(results, not_measured(), options.out / "report.html")
     overview.draw(results, options.out / "overview.png")
+    if options.readme:
+        overview.shrink(options.out / "overview.png", README_PICTURE)
     passed = sum(result.has_passed for result in results)
     print(table(results))
     print(f"{passed} of {len(results)} rows hold, {sum(each.seconds for each in results):.0f} s")

@@ -34,7 +34,7 @@ NOT_MEASURED = [
         "the_matrix_of_contacts_is_the_derivative_of_their_force.",
     ),
 ]
-"""What the design wants validated and this report cannot show."""
+"""What ought to be validated and this report cannot show."""
 
 
 def rows_of(chapter: str) -> list[Row]:

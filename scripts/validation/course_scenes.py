@@ -14,14 +14,14 @@ from versus.full_size import settings
 
 from .baked import SCENES, Baked, bake, read
 from .plain_cloth import Demo
-from .row import Curve, Finding, Range, Row
+from .row import EXACTLY, Curve, Finding, Range, Row, Tolerance
 from .specimen import STILL, Setting, Shape, Specimen, grid
 
 CHAPTER = "course_scenes"
 
 RATE = Range(0.0, 0.101)
 """The assignment's tenth, which frames keep to a tenth of a percentage point."""
-DEMO = 1e-9
+DEMO = Tolerance(1e-9, is_relative=False)
 """m: rounding of 1e-16 grows with two seconds of motion."""
 FALLS = 1e-3
 """m: by how much a sag must fall at the least where springs are ten times as stiff."""
@@ -81,7 +81,7 @@ def untangled(name: str) -> Finding:
     }
     told = ", ".join(f"{oracle}: {len(frames)}" for oracle, frames in found.items())
     note = f"frames with intersections of {len(scene.frames)}: {told}"
-    return Finding(len(set().union(*found.values())), Range(0, 0), partial(wires, scene), note)
+    return Finding(len(set().union(*found.values())), 0.0, partial(wires, scene), note)
 
 
 @cache
@@ -142,7 +142,7 @@ def demo_error() -> Finding:
     ours, plain = demonstrated()
     corner, times = 13, 0.1 * np.arange(21)
     plot = Curve(times, ours[:, corner, 2], plain[:, corner, 2], "t (s)", "blown corner z (m)")
-    return Finding(float(np.abs(ours - plain).max()), Range(0.0, DEMO), plot)
+    return Finding(float(np.abs(ours - plain).max()), 0.0, plot)
 
 
 def collided(names: Sequence[str]) -> list[Row]:
@@ -151,7 +151,7 @@ def collided(names: Sequence[str]) -> list[Row]:
     source = "exact predicates, and the package ipctk"
     return [
         Row(CHAPTER, f"{NAMES[name][0]}: frames with an intersection", "frames", "", source, test,
-            partial(untangled, name))
+            partial(untangled, name), EXACTLY)
         for name in names
     ]  # fmt: skip
 
@@ -182,6 +182,6 @@ def rows() -> list[Row]:
     found.append(
         Row(CHAPTER, "numpy demo, 14 x 14, after two seconds", "farthest particle", "m",
             "the same method in plain numpy, written apart (plain_cloth.py)",
-            "the_numpy_demonstration_moves_as_the_plain_method_does", demo_error)
+            "the_numpy_demonstration_moves_as_the_plain_method_does", demo_error, DEMO)
     )  # fmt: skip
     return found

@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 
 from .baked import Baked, bake, read
-from .row import Curve, Finding, Range, Row, Tolerance
+from .row import EXACTLY, Curve, Finding, Row, Tolerance
 from .specimen import G, Setting, Shape, Specimen, even_grid
 
 CHAPTER = "friction_contact"
 
 DEAD_BAND = Tolerance(1.0, is_relative=False)
-"""Degrees; of the design, as are the two percent."""
+"""Degrees: what is wanted, as are the two percent."""
 SLIDING = Tolerance(0.02)
 
 THICKNESS = 0.008
@@ -208,7 +208,7 @@ def untangled(name: str) -> Finding:
     bad = set().union(*found.values())
     told = ", ".join(f"{oracle}: {len(frames)}" for oracle, frames in found.items())
     note = f"frames with intersections of {len(scene.frames)}: {told}; {sum(row['contacts'] for row in scene.rows)} contacts"
-    return Finding(len(bad), Range(0, 0), partial(cross_section, scene), note)
+    return Finding(len(bad), 0.0, partial(cross_section, scene), note)
 
 
 def rows() -> list[Row]:
@@ -237,6 +237,6 @@ def rows() -> list[Row]:
     for name, words in SCENES.items():
         found.append(
             Row(CHAPTER, f"{words}: frames with an intersection", "frames", "",
-                "exact predicates, and the package ipctk", test, partial(untangled, name))
+                "exact predicates, and the package ipctk", test, partial(untangled, name), EXACTLY)
         )  # fmt: skip
     return found

@@ -11,7 +11,7 @@ import boucle_core
 import numpy as np
 
 from . import reference
-from .row import Curve, Finding, Range, Row, Tolerance
+from .row import EXACTLY, Curve, Finding, Range, Row, Tolerance
 from .specimen import STILL, Setting, Specimen, even_grid
 
 CHAPTER = "lattice"
@@ -210,7 +210,7 @@ def rows() -> list[Row]:
         springs = f"(ks, kd, kb) = ({line['ks']:g}, {line['kd']:g}, {line['kb']:g})"
         what = "rules bounded at 0.98 and diverged at 1.02 of the bound, in 10 000 steps"
         test = "ten_thousand_steps_stay_bounded_below_the_lattices_limit_and_diverge_above_it"
-        measure, exactly = partial(bracket, line), Tolerance(0.0, is_relative=False)
+        measure = partial(bracket, line)
         found.append(
             Row(
                 CHAPTER,
@@ -220,7 +220,7 @@ def rows() -> list[Row]:
                 source,
                 test,
                 measure,
-                exactly,
+                EXACTLY,
             )
         )
         test = "auto_takes_between_half_and_all_of_the_lattices_limit"

@@ -14,6 +14,8 @@ from .row import Result
 
 GREEN, RED = "#1a7f37", "#c4261d"
 COLUMNS = 6
+WIDTH = 1400
+"""Pixels of the small copy."""
 SHOWN = (
     "symplectic Euler: period ratio T/T0",
     "Runge-Kutta 4: energy factor a step",
@@ -84,6 +86,17 @@ def draw(results: Sequence[Result], path: Path) -> None:
         figure.suptitle(title, fontsize=10, x=0.01, ha="left")
         figure.savefig(path, dpi=120, facecolor="white")
         plt.close(figure)
+
+
+def shrink(picture: Path, target: Path) -> None:
+    """Write a smaller copy with few colours, the rare green and red among them."""
+    from PIL import Image
+
+    with Image.open(picture) as image:
+        size = (WIDTH, round(image.height * WIDTH / image.width))
+        small = image.convert("RGB").resize(size, Image.Resampling.LANCZOS)
+    flat = small.quantize(128, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    flat.save(target, optimize=True)
 
 
 def wrapped(name: str, width: int = 36) -> str:

@@ -38,6 +38,9 @@ class Tolerance:
         return f"{100.0 * amount:.2g} %" if amount >= 1e-4 else f"{amount:.0e}"
 
 
+EXACTLY = Tolerance(0.0, is_relative=False)
+
+
 @dataclass(frozen=True)
 class Range:
     """Where a result must lie; an error is how far it is outside."""

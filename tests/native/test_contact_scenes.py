@@ -4,279 +4,19 @@ What ipctk and numpy look at is the baked file: positions as they are stored, co
 """
 
 import tomllib
-from dataclasses import dataclass, replace
-from itertools import pairwise
-from pathlib import Path
+from dataclasses import replace
 
 import boucle_core
-import ipctk
 import numpy as np
 import pytest
 
-from versus.full_size import NAMES, RECOVERIES, SCENES
+from validation.baked import SCENES, bake, read
+from validation.nearness import edge_triangle
+from validation.obstacles import HEAD, Obstacle
+from versus.full_size import NAMES, RECOVERIES
 
-HEAD = 32
-"""Bytes at the head of a PC2."""
 BEYOND_RATE = 0.002
 """How much longer than its deformation rate allows an edge may be, as a part of its rest length."""
-
-
-def read_pc2(path):
-    """First frame, frames from sample to sample, and positions (m) as stored: sample, vertex, axis."""
-    data = Path(path).read_bytes()
-    points, samples = np.frombuffer(data, "<i4", 1, 16)[0], np.frombuffer(data, "<i4", 1, 28)[0]
-    first, rate = np.frombuffer(data, "<f4", 2, 20)
-    return first, rate, np.frombuffer(data, "<f4", offset=HEAD).reshape(samples, points, 3)
-
-
-def read_obj(path):
-    """Vertices (m) and triangles, each face a fan around its first corner."""
-    vertices, triangles = [], []
-    for line in Path(path).read_text().splitlines():
-        word, *rest = line.split() or [""]
-        if word == "v":
-            vertices.append([float(number) for number in rest[:3]])
-        elif word == "f":
-            corners = [int(corner.partition("/")[0]) - 1 for corner in rest]
-            triangles += [[corners[0], *pair] for pair in pairwise(corners[1:])]
-    return np.array(vertices), np.array(triangles)
-
-
-def read_sides(path):
-    """The edges of the faces of an OBJ, once each."""
-    sides = set()
-    for line in Path(path).read_text().splitlines():
-        if line.startswith("f "):
-            corners = [int(corner.partition("/")[0]) - 1 for corner in line.split()[1:]]
-            pairs = zip(corners, corners[1:] + corners[:1], strict=True)
-            sides |= {(min(pair), max(pair)) for pair in pairs}
-    return np.array(sorted(sides))
-
-
-def turned(points, rotation_deg):
-    """Points turned about the x, then the y, then the z axis of the world."""
-    points = np.array(points, dtype=float)
-    for axis, angle in enumerate(np.radians(rotation_deg)):
-        a, b = (axis + 1) % 3, (axis + 2) % 3
-        along, across = points[..., a].copy(), points[..., b].copy()
-        points[..., a] = np.cos(angle) * along - np.sin(angle) * across
-        points[..., b] = np.sin(angle) * along + np.cos(angle) * across
-    return points
-
-
-def placed(points, keys):
-    """Points where the `transform` of a cloth or collider puts them."""
-    transform = keys.get("transform", {})
-    points = transform.get("scale", 1.0) * np.array(points, dtype=float)
-    points = turned(points, transform.get("rotation_deg", (0.0, 0.0, 0.0)))
-    return points + transform.get("location", (0.0, 0.0, 0.0))
-
-
-def motion_at(keyframes, frame):
-    """Displacement (m) and angles (degrees) at a frame."""
-    frames = [keyframe["frame"] for keyframe in keyframes]
-    tracks = [
-        [keyframe.get(key, (0.0, 0.0, 0.0)) for keyframe in keyframes]
-        for key in ("location", "rotation_deg")
-    ]
-    return [
-        np.array([np.interp(frame, frames, [value[axis] for value in track]) for axis in range(3)])
-        for track in tracks
-    ]
-
-
-BOX_TRIANGLES = np.array(
-    [
-        [0, 2, 3], [0, 3, 1], [4, 5, 7], [4, 7, 6], [0, 1, 5], [0, 5, 4],
-        [2, 6, 7], [2, 7, 3], [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5],
-    ]
-)  # fmt: skip
-"""Corner i of a box is at the larger end of axis a if bit a of i is set."""
-
-
-@dataclass
-class Obstacle:
-    """A collider: points (m), joined to triangles, or with a radius, or a plane's point and normal."""
-
-    keys: dict
-    points: np.ndarray
-    triangles: np.ndarray | None = None
-    samples: tuple | None = None
-
-    @classmethod
-    def of(cls, keys, folder):
-        """Read from the table of a scene."""
-        samples = triangles = None
-        if "mesh" in keys:
-            points, triangles = read_obj(folder / keys["mesh"])
-            samples = read_pc2(folder / keys["cache"]) if "cache" in keys else None
-        elif box := keys.get("box"):
-            ends = np.array([[i & 1, i >> 1 & 1, i >> 2 & 1] for i in range(8)]) - 0.5
-            points = turned(ends * box["size"], box.get("rotation_deg", (0, 0, 0))) + box["center"]
-            triangles = BOX_TRIANGLES
-        elif capsule := keys.get("capsule"):
-            points = [capsule["a"], capsule["b"]]
-        elif plane := keys.get("plane"):
-            points = [plane["point"], np.add(plane["point"], plane["normal"])]
-        else:
-            points = [keys["sphere"]["center"]]
-        return cls(keys, placed(points, keys), triangles, samples)
-
-    def at(self, frame):
-        """Where its points are (m)."""
-        if self.samples is not None:
-            first, rate, samples = self.samples
-            place = np.clip((frame - first) / rate, 0, len(samples) - 1)
-            before = int(place)
-            after = min(before + 1, len(samples) - 1)
-            ends = samples[[before, after]].astype(float)
-            return placed(ends[0] + (place - before) * (ends[1] - ends[0]), self.keys)
-        if "motion" not in self.keys:
-            return self.points
-        location, rotation = motion_at(self.keys["motion"], frame)
-        return turned(self.points, rotation) + location
-
-    def depth(self, corners, frame):
-        """How deep (m) triangles, corner by corner, lie in a plane, sphere or capsule; 0 or less outside."""
-        points = self.at(frame)
-        if "plane" in self.keys:
-            normal = points[1] - points[0]
-            return -((corners - points[0]) @ (normal / np.linalg.norm(normal))).min()
-        if "sphere" in self.keys:
-            radius, distances = self.keys["sphere"]["radius"], point_triangle(points[0], corners)
-        else:
-            radius, distances = self.keys["capsule"]["radius"], edge_triangle(points, corners)
-        return self.keys.get("transform", {}).get("scale", 1.0) * radius - distances.min()
-
-
-def dot(a, b):
-    return (a * b).sum(-1)
-
-
-def point_edge(point, start, end):
-    """Distances (m) of points and edges."""
-    way = end - start
-    share = np.clip(dot(point - start, way) / dot(way, way), 0.0, 1.0)
-    return np.linalg.norm(start + share[..., None] * way - point, axis=-1)
-
-
-def point_triangle(point, corners):
-    """Distances (m) of a point and triangles."""
-    after = np.roll(corners, -1, axis=1)
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    length = np.linalg.norm(normal, axis=1)
-    sides = dot(np.cross(after - corners, point - corners), normal[:, None])
-    is_above = (sides >= 0).all(1) & (length > 0)
-    height = np.abs(dot(point - corners[:, 0], normal)) / np.where(length > 0, length, 1.0)
-    return np.where(is_above, height, point_edge(point, corners, after).min(1))
-
-
-def edge_triangle(edge, corners):
-    """Distances (m) of an edge and triangles."""
-    start, end = edge
-    ends = np.minimum(point_triangle(start, corners), point_triangle(end, corners))
-    after = np.roll(corners, -1, axis=1)
-    distances = np.minimum(ends, edge_edge(start, end, corners, after).min(1))
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    from_start, from_end = (dot(point - corners[:, 0], normal) for point in edge)
-    sides = dot(np.cross(corners - start, after - start), end - start)
-    is_through = ((sides >= 0).all(1) | (sides <= 0).all(1)) & (from_start * from_end < 0)
-    return np.where(is_through, 0.0, distances)
-
-
-def edge_edge(start, end, starts, ends):
-    """Distances (m) of an edge and edges."""
-    near = np.minimum(point_edge(start, starts, ends), point_edge(end, starts, ends))
-    near = np.minimum(near, point_edge(starts, start, end))
-    near = np.minimum(near, point_edge(ends, start, end))
-    one, other, between = end - start, ends - starts, starts - start
-    a, b, c = dot(one, one), dot(one, other), dot(other, other)
-    d, e = dot(one, between), dot(other, between)
-    area = a * c - b * b
-    safe = np.where(area > 0, area, 1.0)
-    s, t = (c * d - b * e) / safe, (b * d - a * e) / safe
-    is_inside = (area > 0) & (s > 0) & (s < 1) & (t > 0) & (t < 1)
-    apart = between + t[..., None] * other - s[..., None] * one
-    return np.where(is_inside, np.linalg.norm(apart, axis=-1), near)
-
-
-@dataclass
-class Baked:
-    """A scene and what its bake left."""
-
-    name: str
-    out: Path
-    rows: list
-    frames: np.ndarray
-    """Positions (m) of all cloths, one after the other: frame, vertex, axis."""
-    triangles: np.ndarray
-    edges: np.ndarray
-    rates: np.ndarray
-    """Deformation rate of each edge."""
-    obstacles: list
-
-    @property
-    def numbers(self):
-        """The numbers of its frames."""
-        return [row["frame"] for row in self.rows]
-
-    @property
-    def strains(self):
-        """The largest strain in each frame beyond that which the rate of its edge allows."""
-        ends = self.frames[:, self.edges].astype(float)
-        lengths = np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=-1)
-        return (lengths / lengths[0] - 1.0 - self.rates).max(1)
-
-    def crossed(self):
-        """The frames in which ipctk finds an intersection among cloths and meshes."""
-        solid = [obstacle for obstacle in self.obstacles if obstacle.triangles is not None]
-        groups = [[each] for each in solid] or [[]]  # colliders may pass through each other
-        found = []
-        for group in groups:
-            rest = np.concatenate([self.frames[0], *(each.points for each in group)])
-            triangles = [self.triangles, *(each.triangles + len(self.frames[0]) for each in group)]
-            triangles = np.concatenate(triangles)
-            mesh = ipctk.CollisionMesh(rest.astype(float), ipctk.edges(triangles), triangles)
-            for number, frame in zip(self.numbers, self.frames, strict=True):
-                places = np.concatenate([frame, *(each.at(number) for each in group)])
-                if ipctk.has_intersections(mesh, places.astype(float)):
-                    found.append(number)
-        return sorted(set(found))
-
-    def sunk(self):
-        """The frames in which cloth lies in a plane, sphere or capsule, deeper than stored numbers are fine."""
-        found = []
-        for number, frame in zip(self.numbers, self.frames, strict=True):
-            corners = frame.astype(float)[self.triangles]
-            finest = float(np.spacing(np.abs(frame).max()))
-            smooth = [obstacle for obstacle in self.obstacles if obstacle.triangles is None]
-            if any(obstacle.depth(corners, number) > finest for obstacle in smooth):
-                found.append(number)
-        return found
-
-
-def bake(name, out, threads, overrides=()):
-    """Bake a scene into a folder."""
-    scene = str(SCENES / f"{name}.toml")
-    return boucle_core.bake(scene, str(out), threads=threads, overrides=overrides)
-
-
-def read(name, out, report, scene=None):
-    """What a bake has left; of the scene as it is written, if nothing else is given."""
-    if scene is None:
-        scene = tomllib.loads((SCENES / f"{name}.toml").read_text(encoding="utf-8"))
-    frames, triangles, edges, rates, base = [], [], [], [], 0
-    for cloth in scene["cloth"]:
-        mesh = out / f"{cloth['name']}.obj"
-        sides = read_sides(mesh)
-        edges.append(base + sides)
-        triangles.append(base + read_obj(mesh)[1])
-        rates.append(np.full(len(sides), cloth.get("springs", {}).get("deformation_rate", 0.1)))
-        frames.append(read_pc2(mesh.with_suffix(".pc2"))[2])
-        base += frames[-1].shape[1]
-    obstacles = [Obstacle.of(keys, SCENES) for keys in scene.get("collider", [])]
-    joined = [np.concatenate(parts) for parts in (triangles, edges, rates)]
-    return Baked(name, out, report["frames"], np.concatenate(frames, axis=1), *joined, obstacles)
 
 
 @pytest.fixture(scope="module")
@@ -320,8 +60,7 @@ def whole(baked):
 @pytest.mark.parametrize("name", NAMES)
 def test_no_frame_has_an_intersection_by_our_count_by_ipctk_or_by_distance(name, bake_once):
     baked = bake_once(name)
-    counts = {row["frame"]: row["intersections"] for row in baked.rows if row["intersections"] != 0}
-    assert not counts, f"{name}: intersections by frame, counted exactly: {counts}"
+    assert not (counts := baked.counted()), f"{name}: intersections by frame, exactly: {counts}"
     assert not (found := baked.crossed()), f"{name}: ipctk finds intersections in frames {found}"
     assert not (found := baked.sunk()), f"{name}: cloth lies in a collider in frames {found}"
 
@@ -412,7 +151,7 @@ ELSEWHERE = {"sheet_in_ball": [0.0, 0.0, -0.05], "sheet_in_box": [1.0, 0.0, -0.2
 
 def comes_free(baked, opened=1):
     """Check that a scene is tangled, and free in time and ever after, say our count, ipctk and distances."""
-    tangled = [row["frame"] for row in baked.rows if row["intersections"] != 0]
+    tangled = list(baked.counted())
     assert tangled, f"{baked.name}: never tangled"
     last = opened + MOST_FRAMES
     assert baked.numbers[-1] > last + 6, f"{baked.name}: too short to see"

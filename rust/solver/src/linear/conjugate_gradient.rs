@@ -34,6 +34,9 @@ pub(crate) struct Solved {
     pub(crate) gained: f64,
 }
 
+/// Iterations at the least after a first direction: beside what that gains, one gains little, whatever is left.
+const AFTER_FIRST: u32 = 4;
+
 /// When to stop.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stop {
@@ -96,10 +99,12 @@ impl ConjugateGradient {
     ) -> Solved {
         self.solution.fill(0.0);
         let before = self.gained;
+        let mut least_iterations = stop.least_iterations;
         if let Some(direction) = first {
             self.move_along(operator, direction);
+            least_iterations = least_iterations.max(AFTER_FIRST);
         }
-        self.iterate(operator, inverse, stop, before)
+        self.iterate(operator, inverse, Stop { least_iterations, ..stop }, before)
     }
 
     /// Moves the solution along a direction to where it leaves the least.

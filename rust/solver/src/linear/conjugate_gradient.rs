@@ -34,9 +34,6 @@ pub(crate) struct Solved {
     pub(crate) gained: f64,
 }
 
-/// Iterations at the least after a first direction: beside what that gains, one gains little, whatever is left.
-const AFTER_FIRST: u32 = 4;
-
 /// When to stop.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stop {
@@ -89,45 +86,12 @@ impl ConjugateGradient {
         }
     }
 
-    /// Solves for the solution, given the residual, from the best multiple of a first direction if one is given.
+    /// Solves for the solution, given the residual.
     pub(crate) fn solve(
         &mut self,
         operator: &impl Operator,
         inverse: &mut dyn Inverse,
-        first: Option<&Field>,
         stop: Stop,
-    ) -> Solved {
-        self.solution.fill(0.0);
-        let before = self.gained;
-        let mut least_iterations = stop.least_iterations;
-        if let Some(direction) = first {
-            self.move_along(operator, direction);
-            least_iterations = least_iterations.max(AFTER_FIRST);
-        }
-        self.iterate(operator, inverse, Stop { least_iterations, ..stop }, before)
-    }
-
-    /// Moves the solution along a direction to where it leaves the least.
-    fn move_along(&mut self, operator: &impl Operator, direction: &Field) {
-        let Self { residual, solution, product, partial, gained, .. } = self;
-        operator.apply(direction, product);
-        let slope = dot(direction, residual, partial);
-        let length = slope / dot(direction, product, partial);
-        if length.is_finite() {
-            let step = length as f32;
-            solution.update(direction, |x, d| *x += step * d);
-            residual.update(product, |r, hd| *r += -step * hd);
-            *gained += length * slope;
-        }
-    }
-
-    /// Iterations from the present solution and residual.
-    fn iterate(
-        &mut self,
-        operator: &impl Operator,
-        inverse: &mut dyn Inverse,
-        stop: Stop,
-        before: f64,
     ) -> Solved {
         let Self {
             residual,
@@ -139,6 +103,8 @@ impl ConjugateGradient {
             gained,
             interrupter,
         } = self;
+        solution.fill(0.0);
+        let before = *gained;
         let mut last = f64::INFINITY;
         let mut iterations = 0;
         while iterations < stop.most_iterations && !interrupter.is_asked() {

@@ -119,7 +119,7 @@ impl Response {
         gradients.start();
         gradients.take_residual(&wanted.velocity);
         let mut inverse = Blocks { blocks, step };
-        gradients.solve(&Matrix { inertia: own, contacts }, &mut inverse, None, STOP);
+        gradients.solve(&Matrix { inertia: own, contacts }, &mut inverse, STOP);
     }
 }
 

@@ -18,8 +18,7 @@
 //! constant while step, stiffness and pins are, and one number for each pair of particles; bend springs are left out.
 //!
 //! Iterations end when one brings the guess nearer by a small part only of what all have, in the norm of H. Mostly two
-//! of Newton are made; BDF2 needs the second where cloth snaps taut. Fabrics are solved further, and look first where the last
-//! step went ([`recalled`]).
+//! of Newton are made; BDF2 needs the second where cloth snaps taut. What is woven is solved further ([`solving`]).
 //!
 //! Source: Baraff & Witkin 1998 for the step; Bouaziz et al. 2014 for P.
 
@@ -29,7 +28,6 @@ mod inflated;
 mod momentum;
 mod preconditioner;
 mod pull;
-mod recalled;
 mod smoothed;
 mod solving;
 mod step_error;
@@ -43,7 +41,7 @@ use crate::contact::Contacts;
 use crate::fabric::Fabrics;
 use crate::force::AirScratch;
 use crate::interrupter::Interrupter;
-use crate::linear::{BlockJacobi, ConjugateGradient, Field, Solved, Stop};
+use crate::linear::{BlockJacobi, ConjugateGradient, Solved, Stop};
 use crate::settings::LinearSolver;
 use crate::state::{Coordinates, State};
 use crate::system::{Motion, Observed, Rate, System};
@@ -88,9 +86,7 @@ pub(crate) struct Implicit {
     pulling: pull::Scratch,
     pieces: Pieces,
     gradients: ConjugateGradient,
-    /// The direction in which a step is looked for first, if there is one.
-    recalled: Field,
-    has_recalled: bool,
+    solving: Solving,
     /// Base position, and the target in the place of velocities.
     base: State,
     /// The present guess.
@@ -131,8 +127,7 @@ impl Implicit {
             taut,
             pieces: Pieces::new(count, springs),
             gradients: ConjugateGradient::new(count, interrupter),
-            recalled: Field::zeros(count),
-            has_recalled: false,
+            solving: Solving::of(cloths),
             base: State::zeros(count),
             at: State::zeros(count),
             residual: State::zeros(count),
@@ -163,6 +158,7 @@ impl Implicit {
     /// Takes the present stiffness of the cloths' springs.
     pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth], fabrics: &Fabrics) {
         self.preconditioner.follow_stiffness(cloths, fabrics);
+        self.solving = Solving::of(cloths);
     }
 
     /// Moves `state` by one step of h seconds, among contacts that were told of the step.
@@ -176,15 +172,12 @@ impl Implicit {
         let formula = self.formula(h);
         let iterations = self.iterations;
         self.predict(system, state, formula, h);
-        if !system.fabrics.is_empty() {
-            self.recall(system, state);
-        }
         if contacts.is_empty() {
             self.approach(system, contacts, formula.step, h);
         } else {
             self.approach_and_touch(system, contacts, formula.step, h);
         }
-        let weight = Solving::of(system).weight_of_error(self.iterations - iterations);
+        let weight = self.solving.weight_of_error(self.iterations - iterations);
         self.memory.error += weight * self.error(state, contacts, h);
         self.memory.before.copy_from(state);
         self.memory.step = h;
@@ -199,7 +192,7 @@ impl Implicit {
 
     /// Newton's iterations from the present guess.
     fn approach(&mut self, system: &System, contacts: &mut Contacts, step: f64, h: f64) {
-        let solving = Solving::of(system);
+        let solving = self.solving;
         let [least, most] = match (contacts.count(), contacts.remembers()) {
             (0, _) => [1, solving.newton],
             (_, true) => [LEAST_IN_CONTACT, MOST_IN_CONTACT],
@@ -213,7 +206,6 @@ impl Implicit {
             }
             self.linearize(system, contacts, step, h);
             let solved = self.solve(system, contacts, step, solving.stop);
-            self.has_recalled = false;
             self.iterations += solved.iterations;
             if solved.iterations == 0 {
                 break;
@@ -344,7 +336,6 @@ impl Implicit {
     /// Solves for the move from the present guess.
     fn solve(&mut self, system: &System, contacts: &Contacts, h: f64, stop: Stop) -> Solved {
         let Self { preconditioner, hessian, blocks, scratch, gradients, observed, .. } = self;
-        let first = self.has_recalled.then_some(&self.recalled);
         let matrix = &hessian.without_bends(system, &contacts.matrix);
         let inverse = preconditioner.inverse(system, h);
         let operator = hessian.on(system, &contacts.matrix);
@@ -352,9 +343,9 @@ impl Implicit {
         let largest = hessian.largest();
         let smoothed = &mut Smoothed { matrix, contacts, blocks, inverse, largest, scratch };
         if system.air.pressures.is_empty() {
-            return gradients.solve(&operator, smoothed, first, stop);
+            return gradients.solve(&operator, smoothed, stop);
         }
-        gradients.solve(&Inflated::new(operator, system, &observed.air), smoothed, first, stop)
+        gradients.solve(&Inflated::new(operator, system, &observed.air), smoothed, stop)
     }
 
     /// Moves the guess by the solution.

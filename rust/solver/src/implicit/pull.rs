@@ -111,7 +111,7 @@ impl Implicit {
         gradients.start();
         gradients.take_residual(&residual.position);
         let operator = WithTaut { matrix, taut };
-        self.iterations += gradients.solve(&operator, inverse, None, PULL).iterations;
+        self.iterations += gradients.solve(&operator, inverse, PULL).iterations;
         taut.follow(&gradients.solution, tensions);
         for (axis, moved) in moved.0.iter_mut().enumerate() {
             let moves = moved.iter_mut().zip(&gradients.solution.0[axis]);

@@ -1,7 +1,8 @@
 //! How far the equations of a step are solved.
 
+use crate::cloth::Cloth;
 use crate::linear::Stop;
-use crate::system::System;
+use crate::material::SpringKind;
 
 /// When iterations end.
 #[derive(Clone, Copy, Debug)]
@@ -17,9 +18,10 @@ pub(super) struct Solving {
 }
 
 impl Solving {
-    /// For what is in a system.
-    pub(super) fn of(system: &System) -> Self {
-        if system.fabrics.is_empty() { OF_SPRINGS } else { OF_FABRIC }
+    /// For cloths: as far as the one asks that is hardest to solve.
+    pub(super) fn of(cloths: &[Cloth]) -> Self {
+        let is_woven = |cloth: &Cloth| cloth.fabric.is_some() || contrast(cloth) >= WOVEN;
+        if cloths.iter().any(is_woven) { OF_WOVEN } else { OF_SPRINGS }
     }
 
     /// What the error of a step counts for that took so many iterations; steps grow by its cube root.
@@ -34,7 +36,7 @@ const NEWTON: usize = 3;
 /// Conjugate gradients stop early, where the error of the step is larger than theirs. With 0.15 a strip of 256 rows that
 /// falls and swings is 44 mm (root mean square) off a fine reference after a second, with this 25 mm, with 0.02 19 mm; and
 /// what they leave looks like an error of the step, and asks for more of them.
-const STOP: Stop = Stop { tolerance: 0.06, least_iterations: 1, most_iterations: 200 };
+const STOP: Stop = Stop { tolerance: 0.06, least_iterations: 1, most_iterations: 320 };
 
 /// No more Newton iterations once one gains no more than the square of this part of all.
 const LEFT: f64 = 0.2;
@@ -44,7 +46,21 @@ const OF_SPRINGS: Solving =
 
 /// Woven cloth is a hundred times as stiff along its yarns as across them. What a step leaves of the strain comes back in
 /// the prediction of the next, several times as large: with the limits of springs, 64 x 64 vertices of poplin that hang by two
-/// corners shake within ten frames until the limiter stops them. With these they hang still, in a third of the steps. Ripstop
-/// nylon, lighter and stiffer, hangs still in 24 steps of 20 iterations a frame, but not in 12 of 110.
-const OF_FABRIC: Solving =
-    Solving { stop: Stop { tolerance: 0.01, ..STOP }, newton: 5, left: 0.05, most_iterations: 20 };
+/// corners shake within ten frames until the limiter stops them. With these they hang still, in a third of the steps. What is
+/// left looks like weight, too, where hinges bend. Ripstop nylon, lighter and stiffer, hangs still in 24 steps of 20 iterations
+/// a frame, but not in 12 of 110.
+const OF_WOVEN: Solving =
+    Solving { stop: Stop { tolerance: 0.005, ..STOP }, newton: 5, left: 0.05, most_iterations: 32 };
+
+/// Springs so many times as stiff along edges as across faces are as hard to solve as fabric.
+const WOVEN: f64 = 20.0;
+
+/// By how much the stiffest stretch spring is stiffer than the softest shear spring; 0 where there are none.
+fn contrast(cloth: &Cloth) -> f64 {
+    let of = |kind: SpringKind| {
+        let springs = cloth.springs.iter().filter(move |spring| spring.kind == kind);
+        springs.map(|spring| spring.stiffness).filter(|stiffness| *stiffness > 0.0)
+    };
+    let stiffest = of(SpringKind::Stretch).fold(0.0, f64::max);
+    of(SpringKind::Shear).reduce(f64::min).map_or(0.0, |softest| stiffest / softest)
+}

@@ -86,43 +86,12 @@ impl ConjugateGradient {
         }
     }
 
-    /// Solves for the solution, given the residual, from the best multiple of a first direction if one is given.
+    /// Solves for the solution, given the residual.
     pub(crate) fn solve(
         &mut self,
         operator: &impl Operator,
         inverse: &mut dyn Inverse,
-        first: Option<&Field>,
         stop: Stop,
-    ) -> Solved {
-        self.solution.fill(0.0);
-        let before = self.gained;
-        if let Some(direction) = first {
-            self.move_along(operator, direction);
-        }
-        self.iterate(operator, inverse, stop, before)
-    }
-
-    /// Moves the solution along a direction to where it leaves the least.
-    fn move_along(&mut self, operator: &impl Operator, direction: &Field) {
-        let Self { residual, solution, product, partial, gained, .. } = self;
-        operator.apply(direction, product);
-        let slope = dot(direction, residual, partial);
-        let length = slope / dot(direction, product, partial);
-        if length.is_finite() {
-            let step = length as f32;
-            solution.update(direction, |x, d| *x += step * d);
-            residual.update(product, |r, hd| *r += -step * hd);
-            *gained += length * slope;
-        }
-    }
-
-    /// Iterations from the present solution and residual.
-    fn iterate(
-        &mut self,
-        operator: &impl Operator,
-        inverse: &mut dyn Inverse,
-        stop: Stop,
-        before: f64,
     ) -> Solved {
         let Self {
             residual,
@@ -134,6 +103,8 @@ impl ConjugateGradient {
             gained,
             interrupter,
         } = self;
+        solution.fill(0.0);
+        let before = *gained;
         let mut last = f64::INFINITY;
         let mut iterations = 0;
         while iterations < stop.most_iterations && !interrupter.is_asked() {

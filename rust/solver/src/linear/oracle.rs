@@ -226,12 +226,8 @@ fn a_solve_agrees_with_conjugate_gradients_behind_a_multigrid_cycle() {
                 to.copy_from_slice(from);
             }
             gradients.take_residual(&right.position);
-            let solved = gradients.solve(
-                &Forward { graph: &graph, matrix: &matrix },
-                &mut cycle,
-                None,
-                stop,
-            );
+            let solved =
+                gradients.solve(&Forward { graph: &graph, matrix: &matrix }, &mut cycle, stop);
             assert!(solved.iterations < stop.most_iterations, "{side}², {pins:?}");
             add(&mut solution, &gradients.solution);
         }

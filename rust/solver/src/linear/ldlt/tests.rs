@@ -184,7 +184,7 @@ fn conjugate_gradients_need_as_many_iterations_as_with_the_exact_inverse() {
                 gradients.take_residual(&state.position);
                 let stop = Stop { tolerance, least_iterations: 0, most_iterations: 100 };
                 gradients
-                    .solve(&Forward { graph: &graph, matrix: &other }, inverse, None, stop)
+                    .solve(&Forward { graph: &graph, matrix: &other }, inverse, stop)
                     .iterations
             };
             let exact = iterations(&mut Exact(inverse.clone()));

@@ -48,9 +48,8 @@ fn iterations(side: u32, pins: &[usize]) -> (u32, f64) {
     gradients.start();
     gradients.take_residual(&right.position);
     let stop = Stop { tolerance: 1e-3, least_iterations: 0, most_iterations: 300 };
-    let taken = gradients
-        .solve(&Forward { graph: &graph, matrix: &matrix }, &mut cycle, None, stop)
-        .iterations;
+    let taken =
+        gradients.solve(&Forward { graph: &graph, matrix: &matrix }, &mut cycle, stop).iterations;
     let errors = gradients.solution.0[0].iter().zip(&x.0[0]).map(|(a, b)| f64::from(a - b));
     let error = errors.map(|error| error * error).sum::<f64>().sqrt();
     (taken, error / f64::from(side))

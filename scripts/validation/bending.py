@@ -22,8 +22,10 @@ CELLS, WIDE = 30, 3
 """Cells along and across."""
 GAMMAS = (0.1, 1.0, 10.0, 100.0, 1000.0)
 
-RESTS, LONGEST = 3e-5, 200
-"""A droop that changes no more than this part of itself in three frames rests; the most frames until then."""
+RESTS = {"verlet": 3e-5, "bdf2": 2e-3}
+"""A droop that changes no more than this part of itself in three radians rests; implicit steps leave a jitter of 5e-4."""
+LONGEST = 200
+"""Radians until then at the most."""
 
 ALIGNED = Tolerance(0.02)
 ANY_MESH = Tolerance(0.15)
@@ -71,7 +73,7 @@ def middle_line(strip: Specimen) -> np.ndarray:
     return np.array(columns)[places > -1e-9][:, [0, 2]]
 
 
-def settled(strip: Specimen, frames: int = 1) -> np.ndarray:
+def settled(strip: Specimen, frames: int = 1, rests: float = RESTS["verlet"]) -> np.ndarray:
     """The middle line (m) of a cantilever at rest, for whose slowest motion so many frames are a radian."""
     strip.advance(6 * frames)
     droops = [ratio(middle_line(strip))]
@@ -79,7 +81,7 @@ def settled(strip: Specimen, frames: int = 1) -> np.ndarray:
         strip.advance(frames)
         line = middle_line(strip)
         droops.append(ratio(line))
-        if len(droops) > 3 and np.ptp(droops[-3:]) < RESTS * droops[-1]:
+        if len(droops) > 3 and np.ptp(droops[-3:]) < rests * droops[-1]:
             return line
     raise RuntimeError(f"a cantilever still moves after {LONGEST} radians: H/W {droops[-3:]}")
 
@@ -103,7 +105,7 @@ def cantilever(kind: str, gamma: float, integrator: str = "verlet") -> np.ndarra
     )
     pins = np.flatnonzero(shape.positions[:, 0] < 1e-9)
     strip = Specimen(shape, cloth, setting, pins=pins, start=hung(shape, gamma))
-    return settled(strip, math.ceil(setting.fps / slowest))
+    return settled(strip, math.ceil(setting.fps / slowest), RESTS[integrator])
 
 
 def ratio(line: np.ndarray) -> float:
@@ -137,6 +139,36 @@ def profile(gamma: float) -> Callable[[Any], None]:
     expected = [[float(line["x_over_L"]), -float(line["drop_over_L"])] for line in points]
     x, z = np.array(expected).T
     return Curve(shape[:, 0], shape[:, 1], shape[:, 1], "x / L", "z / L", (x, z))
+
+
+@cache
+def by_default(gamma: float) -> float:
+    """H/W under standard gravity with all settings of the solver as they are by default, of a fabric of usual stiffness.
+
+    Three seconds pass; over a fourth the mean is taken, for implicit steps leave a jitter.
+    """
+    stretch = 2000.0
+    length = (gamma * BEND / (DENSITY * G)) ** (1.0 / 3.0)
+    cell = length / CELLS
+    shape = strips.aligned(cell * np.arange(-2, CELLS + 1), cell * np.arange(WIDE + 1))
+    slowest = 3.516 / length**2 * math.sqrt(BEND / DENSITY * (1.0 + 0.12 * gamma))
+    mass = strips.masses(shape, DENSITY)
+    damping = 1.4 * slowest * float((mass**2).sum() / mass.sum())
+    cloth = strips.fabric(stretch, BEND, DENSITY, damping_ratio=0.02, air_damping=damping)
+    pins = np.flatnonzero(shape.positions[:, 0] < 1e-9)
+    strip = Specimen(shape, cloth, Setting("bdf2", gravity=(0.0, 0.0, -G)), pins=pins)
+    strip.advance(72)
+    droops = []
+    for _ in range(24):
+        strip.advance()
+        droops.append(ratio(middle_line(strip)))
+    return float(np.mean(droops))
+
+
+def usual() -> Finding:
+    """Three lengths of a usual fabric by default settings: 4.7, 10 and 22 cm."""
+    gammas = (1.0, 10.0, 100.0)
+    return along_the_table(gammas, [by_default(gamma) for gamma in gammas]).worst(ALIGNED)
 
 
 def single(gamma: float) -> Finding:
@@ -279,7 +311,7 @@ def rows() -> list[Row]:
     source = reference.SOURCES[reference.ELASTICA]
     test = "a_cantilever_droops_as_the_heavy_elastica_on_any_mesh, "
     test += "test_a_cantilever_of_fabric_droops_as_the_elastica_under_any_weight"
-    by_default = "test_a_cantilever_of_fabric_droops_as_the_elastica_by_the_default_integrator"
+    defaults = "test_a_cantilever_of_fabric_droops_as_the_elastica_by_default_settings"
     any_mesh = "test_a_cantilever_of_fabric_droops_as_the_elastica_on_meshes_that_do_not_suit_it"
     rolls = "test_a_moment_at_its_end_closes_a_strip_of_fabric_to_a_circle"
     controls = "test_springs_that_skip_a_vertex_do_not_bend_as_the_elastica"
@@ -291,8 +323,8 @@ def rows() -> list[Row]:
     ]  # fmt: skip
     return [
         *found,
-        Row(CHAPTER, "cantilever of fabric, aligned mesh, the default integrator", "H/W", "", source, by_default,
-            partial(of_mesh, "aligned", "bdf2", moderate, ALIGNED), ALIGNED),
+        Row(CHAPTER, "cantilever of usual fabric, aligned mesh, default settings", "H/W", "", source, defaults,
+            usual, ALIGNED),
         Row(CHAPTER, "cantilever of fabric, mesh at 45°", "H/W", "", source, any_mesh,
             partial(of_mesh, "diagonal", "bdf2", moderate, ANY_MESH), ANY_MESH),
         Row(CHAPTER, "cantilever of fabric, unstructured (Delaunay) mesh", "H/W", "", source, any_mesh,

@@ -36,7 +36,7 @@ const NEWTON: usize = 3;
 /// Conjugate gradients stop early, where the error of the step is larger than theirs. With 0.15 a strip of 256 rows that
 /// falls and swings is 44 mm (root mean square) off a fine reference after a second, with this 25 mm, with 0.02 19 mm; and
 /// what they leave looks like an error of the step, and asks for more of them.
-const STOP: Stop = Stop { tolerance: 0.06, least_iterations: 1, most_iterations: 320 };
+const STOP: Stop = Stop { tolerance: 0.06, least_iterations: 1, most_iterations: 200 };
 
 /// No more Newton iterations once one gains no more than the square of this part of all.
 const LEFT: f64 = 0.2;
@@ -50,7 +50,7 @@ const OF_SPRINGS: Solving =
 /// left looks like weight, too, where hinges bend. Ripstop nylon, lighter and stiffer, hangs still in 24 steps of 20 iterations
 /// a frame, but not in 12 of 110.
 const OF_WOVEN: Solving =
-    Solving { stop: Stop { tolerance: 0.005, ..STOP }, newton: 5, left: 0.05, most_iterations: 32 };
+    Solving { stop: Stop { tolerance: 0.005, ..STOP }, newton: 5, left: 0.05, most_iterations: 20 };
 
 /// Springs so many times as stiff along edges as across faces are as hard to solve as fabric.
 const WOVEN: f64 = 20.0;

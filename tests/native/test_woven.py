@@ -1,0 +1,63 @@
+"""Woven cloth is far stiffer along its yarns than across: what a step leaves of the strain must not come back larger."""
+
+import json
+
+import boucle_core
+import numpy as np
+import pytest
+
+
+def grid(n, size, turn):
+    """A square of n x n vertices, its points given by their two coordinates."""
+    line = np.linspace(-size / 2, size / 2, n)
+    positions = np.array([turn(x, y) for y in line for x in line])
+    a = np.arange(n * n).reshape(n, n)[:-1, :-1].ravel()
+    corners = np.stack([a, a + 1, a + n + 1, a + n], axis=1).ravel().astype(np.int32)
+    starts = np.arange(0, 4 * (n - 1) ** 2, 4, dtype=np.int32)
+    return positions, starts, corners
+
+
+CLOTHS = {
+    "springs": {"springs": {"stretch": 12000.0, "shear": 20.0, "stiffness_from": "continuum"}},
+    "cotton_poplin": {"model": "fabric", "fabric": {"preset": "cotton_poplin"}},
+    "nylon_ripstop": {"model": "fabric", "fabric": {"preset": "nylon_ripstop"}},
+}
+
+
+@pytest.mark.parametrize("name", CLOTHS)
+def test_stiff_light_cloth_comes_to_rest_on_a_box(name):
+    box = {"name": "b", "box": {"center": [0, 0, -0.1], "size": [0.3, 0.3, 0.2]}}
+    scene = {
+        "scene": {"frames": [1, 49]},
+        "cloth": [{"name": "sheet", **CLOTHS[name]}],
+        "collision": {"thickness": 0.0047, "self": False},
+        "collider": [{**box, "thickness": 0.001, "friction": 0.3}],
+    }
+    sheet = grid(25, 0.9, lambda x, y: (x, y, 0.0062))
+    simulation = boucle_core.Simulation(json.dumps(scene), [sheet])
+    kinetic = []
+    for _ in range(48):
+        simulation.advance()
+        kinetic.append(simulation.certificate()["kinetic_energy"])
+    assert max(kinetic[36:]) < 0.1 * max(kinetic)
+
+
+@pytest.mark.parametrize("name", ["cotton_poplin", "nylon_ripstop"])
+def test_woven_cloth_that_hangs_by_two_corners_hangs_still(name):
+    n = 40
+    pins = {"vertices": [n * (n - 1), n * n - 1]}
+    scene = {
+        "scene": {"frames": [1, 37]},
+        "cloth": [{"name": "sheet", "pins": pins, **CLOTHS[name]}],
+        "collision": {"self": False},
+    }
+    sheet = grid(n, 1.0, lambda x, z: (x, 0.0, z))
+    simulation = boucle_core.Simulation(json.dumps(scene), [sheet])
+    simulation.advance()
+    potential = simulation.certificate()["potential_energy"]
+    for _ in range(35):
+        simulation.advance()
+        certificate = simulation.certificate()
+        assert certificate["kinetic_energy"] < 0.01 * potential
+        # Stiff as it is, it carries its weight at a few thousandths of strain.
+        assert certificate["max_strain"] < 0.015

@@ -20,18 +20,19 @@ def grid(n, size, turn):
 CLOTHS = {
     "springs": {"springs": {"stretch": 12000.0, "shear": 20.0, "stiffness_from": "continuum"}},
     "cotton_poplin": {"model": "fabric", "fabric": {"preset": "cotton_poplin"}},
+    "silk_satin": {"model": "fabric", "fabric": {"preset": "silk_satin"}},
     "nylon_ripstop": {"model": "fabric", "fabric": {"preset": "nylon_ripstop"}},
 }
 
 
-@pytest.mark.parametrize("name", CLOTHS)
+@pytest.mark.parametrize("name", ["springs", "cotton_poplin", "silk_satin"])
 def test_stiff_light_cloth_comes_to_rest_on_a_box(name):
     box = {"name": "b", "box": {"center": [0, 0, -0.1], "size": [0.3, 0.3, 0.2]}}
     scene = {
         "scene": {"frames": [1, 49]},
         "cloth": [{"name": "sheet", **CLOTHS[name]}],
         "collision": {"thickness": 0.0047, "self": False},
-        "collider": [{**box, "thickness": 0.001, "friction": 0.3}],
+        "collider": [{**box, "thickness": 0.001, "friction": 0.0}],
     }
     sheet = grid(25, 0.9, lambda x, y: (x, y, 0.0062))
     simulation = boucle_core.Simulation(json.dumps(scene), [sheet])
@@ -39,7 +40,7 @@ def test_stiff_light_cloth_comes_to_rest_on_a_box(name):
     for _ in range(48):
         simulation.advance()
         kinetic.append(simulation.certificate()["kinetic_energy"])
-    assert max(kinetic[36:]) < 0.1 * max(kinetic)
+    assert max(kinetic[42:]) < 0.05 * max(kinetic)
 
 
 @pytest.mark.parametrize("name", ["cotton_poplin", "nylon_ripstop"])
@@ -53,11 +54,11 @@ def test_woven_cloth_that_hangs_by_two_corners_hangs_still(name):
     }
     sheet = grid(n, 1.0, lambda x, z: (x, 0.0, z))
     simulation = boucle_core.Simulation(json.dumps(scene), [sheet])
-    simulation.advance()
-    potential = simulation.certificate()["potential_energy"]
-    for _ in range(35):
+    mass = boucle_core.fabric_presets()[name]["density"]
+    for _ in range(36):
         simulation.advance()
         certificate = simulation.certificate()
-        assert certificate["kinetic_energy"] < 0.01 * potential
+        # Less than what a fall through half a millimetre gives.
+        assert certificate["kinetic_energy"] < 5e-3 * mass
         # Stiff as it is, it carries its weight at a few thousandths of strain.
         assert certificate["max_strain"] < 0.015

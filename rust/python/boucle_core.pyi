@@ -295,8 +295,9 @@ def fabric_presets() -> dict[str, dict[str, Any]]:
 
     Returns:
         By name, the keys of rust/scene/presets/fabrics.toml: title, density (kg/m²), thickness (m), stretch_warp, stretch_weft
-        and shear (N/m), bend_warp and bend_weft (N·m), friction, deformation_rate, damping_ratio, source, and, where anybody
-        has measured it, drape_coefficient ([lowest, highest], %).
+        and shear (N/m), bend_warp and bend_weft (N·m), friction, deformation_rate, damping_ratio, source, where they are not as
+        stretch compression_warp and compression_weft (N/m), and, where anybody has measured it, drape_coefficient ([lowest,
+        highest], %).
     """
 
 def point_triangle_distance(points: Buffer, out: Buffer) -> None:

@@ -18,13 +18,15 @@ _OF_SPRINGS = (
 )  # fmt: skip
 _SWITCHES = {
     "mass_mode": "density",
-    "use_compression": False,
     "damping_ratio_per_kind": False,
     "damping_per_kind": True,
 }
 """Which of the numbers hold."""
 
-SETTINGS = (*_SWITCHES, *_OF_FABRIC, *_OF_SPRINGS)
+_COMPRESSION = {"compression_warp": "stretch_warp", "compression_weft": "stretch_weft"}
+"""Numbers that some fabrics have of their own, and what stands for them in the others."""
+
+SETTINGS = (*_SWITCHES, "use_compression", *_COMPRESSION, *_OF_FABRIC, *_OF_SPRINGS)
 """What a fabric sets, besides the thickness; also what tells whether a cloth still is as its preset left it."""
 
 
@@ -51,6 +53,9 @@ def settings(fabric: Fabric, springs: Mapping[str, Any]) -> dict[str, Any]:
         springs: What the module makes of it on the cloth's mesh: keys of `[cloth.springs]`.
     """
     of_fabric = {name: fabric[name] for name in _OF_FABRIC}
+    of_fabric["use_compression"] = any(name in fabric for name in _COMPRESSION)
+    for name, other in _COMPRESSION.items():
+        of_fabric[name] = fabric.get(name, fabric[other])
     return {**_SWITCHES, **of_fabric, **{name: _typed(springs[name]) for name in _OF_SPRINGS}}
 
 

@@ -299,7 +299,8 @@ def fabric_presets() -> dict[str, dict[str, Any]]:
     Returns:
         By name, the keys of rust/scene/presets/fabrics.toml: group and title (for menus), density (kg/m²), thickness (m),
         stretch_warp, stretch_weft and shear (N/m), bend_warp and bend_weft (N·m), friction, deformation_rate, damping_ratio,
-        source, and, where anybody has measured it, drape_coefficient ([lowest, highest], %).
+        source, where they are not as stretch compression_warp and compression_weft (N/m), and, where anybody has measured it,
+        drape_coefficient ([lowest, highest], %).
     """
 
 def fabric_springs(preset: str, edge: float) -> dict[str, Any]:

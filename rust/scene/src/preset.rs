@@ -30,6 +30,12 @@ pub struct FabricPreset {
     pub stretch_warp: f64,
     /// Tensile stiffness (N/m) along the weft.
     pub stretch_weft: f64,
+    /// Stiffness (N/m) against compression along the warp, as stretch if missing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compression_warp: Option<f64>,
+    /// Stiffness (N/m) against compression along the weft, as stretch if missing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub compression_weft: Option<f64>,
     /// Shear stiffness (N/m).
     pub shear: f64,
     /// Bending stiffness (N·m) of curvature along the warp.
@@ -94,9 +100,16 @@ mod tests {
         let presets: BTreeMap<String, FabricPreset> = toml::from_str(FILE).expect("presets");
         assert!(presets.len() >= 24, "{}", presets.len());
         for (name, preset) in &presets {
+            let stretch = [preset.stretch_warp, preset.stretch_weft];
+            let compression = [
+                preset.compression_warp.unwrap_or(stretch[0]),
+                preset.compression_weft.unwrap_or(stretch[1]),
+            ];
+            let is_softer = compression.iter().zip(&stretch).all(|(one, other)| one <= other);
+            assert!(is_softer, "{name} is compressed less easily than stretched");
             let fabric = boucle_solver::Fabric {
-                stretch: [preset.stretch_warp, preset.stretch_weft],
-                compression: [preset.stretch_warp, preset.stretch_weft],
+                stretch,
+                compression,
                 shear: preset.shear,
                 bend: [preset.bend_warp, preset.bend_weft],
                 damping_ratio: [preset.damping_ratio; 3],

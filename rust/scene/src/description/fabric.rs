@@ -89,7 +89,10 @@ impl FabricDescription {
             number(self.stretch_warp, |preset| preset.stretch_warp, default.stretch[0]),
             number(self.stretch_weft, |preset| preset.stretch_weft, default.stretch[1]),
         ];
-        let compression = [self.compression_warp, self.compression_weft];
+        let compression = [
+            self.compression_warp.or(preset.and_then(|preset| preset.compression_warp)),
+            self.compression_weft.or(preset.and_then(|preset| preset.compression_weft)),
+        ];
         let all =
             number(self.damping_ratio, |preset| preset.damping_ratio, default.damping_ratio[0]);
         let ratios =

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import measure
-from instruments import cantilever, cutting, drape, shear, sheet, tensile
+from instruments import cantilever, cutting, drape, resting, shear, sheet, tensile
 from instruments.elastica import FLAT_TIP, gamma_of_chord, profile
 from instruments.fabric import Fabric
 from instruments.resting import Load, Restless, Specimen, settle
@@ -20,7 +20,7 @@ IN_ORDER = ("silk_habotai", "wool_worsted", "cotton_poplin", "denim")
 @pytest.fixture(scope="module")
 def draped():
     """The first specimen of each fabric whose drape was published, on a grid."""
-    return {preset: drape.measure(Fabric(preset)) for preset in DRAPED}
+    return {preset: drape.measure(Fabric(preset), drape.COARSE) for preset in DRAPED}
 
 
 @pytest.mark.parametrize(
@@ -111,9 +111,9 @@ def along(read):
 
 def test_a_stiff_disc_droops_as_a_plate():
     """Against Kirchhoff's plate, clamped at its inner circle, free at the outer, without Poisson's ratio."""
-    stiffness = 2e-2
+    stiffness = 2e-3
     disc = Fabric("denim", {"bend_warp": stiffness, "bend_weft": stiffness})
-    hanging = drape.measure(disc)
+    hanging = drape.measure(disc, drape.COARSE)
     inner, outer, load = drape.PLATE, drape.DISC, disc.weight / stiffness
     # w = load r⁴/64 + a + b ln r + c r² + d r² ln r: no height and slope inside, no moment and shear force outside.
     conditions = np.array(
@@ -130,9 +130,9 @@ def test_a_stiff_disc_droops_as_a_plate():
     expected = load * outer**4 / 64 + a + b * log + c * outer**2 + d * outer**2 * log
     rim = cutting.norm(hanging.resting.specimen.cut.points) > drape.DISC - 1e-9
     droop = -hanging.resting.positions[rim, 2]
-    assert droop.mean() == pytest.approx(expected, rel=0.04)
+    assert droop.mean() == pytest.approx(expected, rel=0.05)
     assert np.ptp(droop) < 0.05 * expected
-    assert hanging.coefficient == pytest.approx(100.0, abs=1.0)
+    assert hanging.coefficient == pytest.approx(100.0, abs=1.5)
     assert hanging.nodes == 0
 
 
@@ -164,7 +164,7 @@ def test_the_limper_the_fabric_the_less_it_stands_out(draped):
 
 
 def test_a_mesh_without_a_direction_drapes_like_a_grid(draped):
-    scattered = drape.measure(DENIM, kind="delaunay")
+    scattered = drape.measure(DENIM, drape.COARSE, "delaunay")
     assert scattered.coefficient == pytest.approx(draped["denim"].coefficient, abs=5.0)
 
 
@@ -174,11 +174,20 @@ def test_the_same_specimen_drapes_to_the_same_bits():
     assert drape.measure(DENIM, 0.02, specimen=2).coefficient != first.coefficient
 
 
-def test_what_cannot_come_to_rest_is_told():
-    cut = cutting.strip(0.1, 0.05, (4, 2))
-    loose = Specimen(DENIM, cut, np.array([], dtype=int))
+def test_what_cannot_come_to_rest_is_told(monkeypatch):
+    monkeypatch.setattr(resting, "STALL", 40)
+    hanging = Specimen(DENIM, cutting.strip(0.1, 0.05, (4, 2)), np.array([0]))
     with pytest.raises(Restless, match="denim does not come to rest in"):
-        settle(loose, loose.rest, Load(force=1e-9, energy=1e-9, gravity=9.81))
+        settle(hanging, hanging.rest, Load(force=1e-12, energy=1e3, gravity=9.81))
+
+
+def test_a_specimen_that_gains_energy_goes_on_with_shorter_steps():
+    """A step of a tenth of a second is far too long for denim to swing."""
+    hanging = Specimen(DENIM, cutting.strip(0.1, 0.05, (8, 4)), np.arange(0, 45, 9))
+    load = Load(force=0.02, energy=1e-3, gravity=9.81, step=0.1, left=1e-2)
+    rest = settle(hanging, hanging.rest, load)
+    assert rest.load.step < load.step
+    assert rest.positions[8, 2] < -0.09
 
 
 def test_a_sheet_tells_what_was_read_beside_the_preset(tmp_path, capsys):

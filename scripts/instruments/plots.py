@@ -17,7 +17,7 @@ from . import drape, tensile
 from .cantilever import Cantilever
 from .drape import Drape
 from .elastica import FLAT_TIP
-from .sheet import Sheet
+from .sheet import Sheet, figure
 
 COLORS = dict(zip(("warp", "weft", "bias"), KIND_COLORS, strict=True))
 DASHED = (0, (5, 3))
@@ -57,7 +57,7 @@ def tensile_figure(sheet: Sheet) -> Figure:
     for way, read in sheet.tensile.items():
         strain = 100.0 * np.array([0.0, *(pull.marks for pull in read.pulls)])
         tension = np.array([0.0, *(pull.tension for pull in read.pulls)])
-        words = f"{way}: {read.stiffness:.4g} N/m at 0.1 %"
+        words = f"{way}: {figure(read.stiffness, 4)} N/m at 0.1 %"
         axes.plot(strain, tension, "o-", ms=4, color=COLORS[way], label=words)
         axes.axline((0.0, 0.0), slope=0.01 * read.expected, color=COLORS[way], ls=DASHED, lw=1.0)
         widest = max(widest, float(np.interp(top, tension, strain)))

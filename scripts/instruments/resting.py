@@ -137,6 +137,28 @@ class Resting:
         return (energies[0] - energies[1]) / (2.0 * reach)
 
 
+def fall(specimen: Specimen, start: np.ndarray, load: Load, seconds: float) -> np.ndarray:
+    """Where a specimen (m) is that has moved from `start` (m) for some time.
+
+    Raises:
+        Restless: Its energy rises however short the steps.
+    """
+    for _ in range(HALVINGS + 1):
+        running = specimen.simulation(start, load)
+        energy, left = float(running.certificate()["potential_energy"]), seconds
+        while left > 0.0:
+            now, _speed = advanced(running, specimen.mass)
+            if not is_allowed(now, energy, load):
+                break
+            energy, left = now, left - SUBSTEPS * load.step
+        else:
+            positions = np.empty_like(start)
+            running.read_positions(0, positions)
+            return positions
+        load = replace(load, step=0.5 * load.step)
+    raise Restless(f"{specimen.fabric.preset} gains energy as it falls, however short the steps")
+
+
 def settle(specimen: Specimen, start: np.ndarray, load: Load) -> Resting:
     """Let a specimen move from `start` (m) until it rests.
 
@@ -152,7 +174,7 @@ def settle(specimen: Specimen, start: np.ndarray, load: Load) -> Resting:
         while since < STALL:
             steps += SUBSTEPS
             now, next_speed = advanced(running, specimen.mass)
-            if not now <= energy + SLACK * (load.energy + abs(energy)):
+            if not is_allowed(now, energy, load):
                 break
             running.read_positions(0, kept)
             gain = abs(next_speed - speed) / (SUBSTEPS * load.step)
@@ -164,6 +186,11 @@ def settle(specimen: Specimen, start: np.ndarray, load: Load) -> Resting:
             mark, since = (now, 0) if is_better else (mark, since + SUBSTEPS)
         load = replace(load, step=0.5 * load.step)
     raise Restless(f"{specimen.fabric.preset} does not come to rest in {steps} steps")
+
+
+def is_allowed(now: float, before: float, load: Load) -> bool:
+    """Whether an energy (J) may follow another: it has not risen, nor become no number."""
+    return now <= before + SLACK * (load.energy + abs(before))
 
 
 def advanced(running: boucle_core.Simulation, mass: float) -> tuple[float, float]:

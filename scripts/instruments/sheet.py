@@ -71,7 +71,7 @@ def measure(fabric: Fabric, order: Order, say: Callable[[str], None] = lambda _:
             say(f"{name}, {direction}")
             read = instrument.measure(fabric, direction, kind=order.kind, **finely)
             getattr(sheet, name)[direction] = read
-    edge = drape.COARSE if order.cells is None else 2.0 * drape.DISC / order.cells
+    edge = drape.FINE if order.cells is None else 2.0 * drape.DISC / order.cells
     for specimen in range(1, order.specimens + 1) if "drape" in order.instruments else ():
         say(f"drape, specimen {specimen} of {order.specimens}")
         sheet.drapes.append(drape.measure(fabric, edge, order.kind, specimen))

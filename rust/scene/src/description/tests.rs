@@ -601,7 +601,8 @@ fn a_named_fabric_gives_what_the_scene_does_not_say() {
     let bits = |numbers: &[f64]| numbers.iter().map(|number| number.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&[fabric.shear]), bits(&[7.0]));
     assert_eq!(bits(&fabric.stretch), bits(&[denim.stretch_warp, denim.stretch_weft]));
-    assert_eq!(bits(&fabric.compression), bits(&fabric.stretch));
+    let compression = [denim.compression_warp, denim.compression_weft].map(|of| of.expect("yarns"));
+    assert_eq!(bits(&fabric.compression), bits(&compression));
     let rate = cloth.fabric.material().deformation_rate;
     assert_eq!(bits(&[rate]), bits(&[denim.deformation_rate]));
 }

@@ -217,13 +217,19 @@ impl Compliance {
             let tasks = tasks.zip(self.rows.par_chunks(TASK / LANES)).enumerate();
             tasks.for_each(|(task, ((((left, step), moments), angles), rows))| {
                 let own = &last[task * TASK..task * TASK + left.len()];
-                let press =
-                    Press { rows, factors, is_last, angles, last, own, left, step, moments };
-                if number == 0 {
-                    self.arch.dispatch(First(press));
-                } else {
-                    self.arch.dispatch(press);
-                }
+                let is_first = number == 0;
+                self.arch.dispatch(Press {
+                    rows,
+                    factors,
+                    is_first,
+                    is_last,
+                    angles,
+                    last,
+                    own,
+                    left,
+                    step,
+                    moments,
+                });
             });
         }
     }
@@ -233,6 +239,8 @@ impl Compliance {
 struct Press<'a, N> {
     rows: &'a [Rows],
     factors: [N; 2],
+    /// Before the first, nothing was.
+    is_first: bool,
     is_last: bool,
     angles: &'a [N],
     /// The last step of all hinges, and of these.
@@ -243,31 +251,12 @@ struct Press<'a, N> {
     moments: &'a mut [N],
 }
 
-/// The first step, before which nothing was.
-struct First<'a, N>(Press<'a, N>);
-
 impl<N: Number> WithSimd for Press<'_, N> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        self.run::<false>();
-    }
-}
-
-impl<N: Number> WithSimd for First<'_, N> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        self.0.run::<true>();
-    }
-}
-
-impl<N: Number> Press<'_, N> {
-    #[inline(always)]
-    fn run<const IS_FIRST: bool>(self) {
-        let Self { rows, factors: [keep, gain], is_last, last, .. } = self;
+        let Self { rows, factors: [keep, gain], is_first, is_last, last, .. } = self;
         let (angles, own) = (self.angles.as_chunks().0, self.own.as_chunks().0);
         let (left, step) = (self.left.as_chunks_mut().0, self.step.as_chunks_mut().0);
         let moments = self.moments.as_chunks_mut::<LANES>().0;
@@ -277,7 +266,7 @@ impl<N: Number> Press<'_, N> {
                 (&mut left[pack], &mut step[pack]);
             let moments = &mut moments[pack];
             let scale = rows.scale.map(N::of);
-            if IS_FIRST {
+            if is_first {
                 for lane in 0..LANES {
                     left[lane] = scale[lane] * angles[lane];
                     step[lane] = gain * left[lane];

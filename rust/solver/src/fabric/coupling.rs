@@ -74,6 +74,33 @@ impl Couplings {
         Self { edges, sides, wings, of_hinges, bends }
     }
 
+    /// The weight (N/m) of each edge in the constant matrix, in order, and what of it damps (N·s/m).
+    pub(super) fn weights(
+        &self,
+        triangles: &[Triangle],
+        laws: &[MembraneLaw],
+    ) -> Vec<([u32; 2], [f64; 2])> {
+        let weight = |side: &u32| {
+            let [number, i] = [side / 3, side % 3].map(|part| part as usize);
+            let triangle = &triangles[number];
+            let law = &laws[triangle.law as usize];
+            let [stretch, shear] = law.times;
+            let products = triangle.gradients.map(|of| -triangle.area * of[i] * of[(i + 1) % 3]);
+            let along = |stiffness: [f64; 2], shear: f64| {
+                let sum: f64 = products.iter().zip(stiffness).map(|(p, of)| p * (of + shear)).sum();
+                sum.max(0.0)
+            };
+            let stiffness = along(law.stretch, law.shear);
+            let damping = along(law.stretch.map(|of| stretch * of), shear * law.shear);
+            [stiffness, damping]
+        };
+        let sum = |edge: usize| {
+            let own = self.sides.of(edge).iter().map(weight);
+            own.fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]])
+        };
+        self.edges.iter().enumerate().map(|(edge, pair)| (*pair, sum(edge))).collect()
+    }
+
     /// Takes the stiffness of hinges that are alone, and the times (s) by which laws multiply it to damp.
     pub(super) fn follow(&mut self, hinges: &[Hinge], compliance: &Compliance, times: &[f64]) {
         self.bends.fill([0.0; 2]);
@@ -154,32 +181,4 @@ impl Block<1> for WingLink {
     fn turned(numbers: [f32; 1]) -> [f32; 1] {
         numbers
     }
-}
-
-/// The weight (N/m) of each pair of particles, sorted by pair, and what of it damps (N·s/m).
-pub(super) fn weights(triangles: &[Triangle], laws: &[MembraneLaw]) -> Vec<([u32; 2], [f64; 2])> {
-    let mut all: Vec<([u32; 2], [f64; 2])> = Vec::with_capacity(3 * triangles.len());
-    for triangle in triangles {
-        let law = &laws[triangle.law as usize];
-        let [stretch, shear] = law.times;
-        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-            let [a, b] = [triangle.corners[i], triangle.corners[j]];
-            let products = triangle.gradients.map(|of| -triangle.area * of[i] * of[j]);
-            let along = |stiffness: [f64; 2], shear: f64| {
-                let sum: f64 = products.iter().zip(stiffness).map(|(p, of)| p * (of + shear)).sum();
-                sum.max(0.0)
-            };
-            let stiffness = along(law.stretch, law.shear);
-            let damping = along(law.stretch.map(|of| stretch * of), shear * law.shear);
-            all.push(([a.min(b), a.max(b)], [stiffness, damping]));
-        }
-    }
-    all.sort_by_key(|(pair, _)| *pair);
-    all.chunk_by(|a, b| a.0 == b.0)
-        .map(|same| {
-            let sum =
-                same.iter().fold([0.0; 2], |sum, (_, own)| [sum[0] + own[0], sum[1] + own[1]]);
-            (same[0].0, sum)
-        })
-        .collect()
 }

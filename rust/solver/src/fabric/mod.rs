@@ -233,7 +233,7 @@ impl Fabrics {
 
     /// What each pair of particles weighs in the constant matrix, sorted by pair: stiffness (N/m) and damping (N·s/m).
     pub(crate) fn weights(&self) -> Vec<([u32; 2], [f64; 2])> {
-        coupling::weights(&self.triangles, &self.laws)
+        self.couplings.weights(&self.triangles, &self.laws)
     }
 }
 

@@ -19,6 +19,15 @@ impl Field {
         }
     }
 
+    /// The vectors of some particles, axis by axis.
+    #[inline(always)]
+    pub(crate) fn pick<const N: usize>(&self, particles: &[u32; N]) -> [[f32; N]; 3] {
+        self.0.each_ref().map(
+            #[inline(always)]
+            |axis| particles.map(|particle| axis[particle as usize]),
+        )
+    }
+
     /// The three axes of each chunk of particles.
     pub(crate) fn chunks(&self) -> impl IndexedParallelIterator<Item = [&[f32]; 3]> {
         let [x, y, z] = self.0.each_ref().map(|axis| axis.par_chunks(CHUNK));

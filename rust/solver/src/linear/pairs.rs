@@ -191,9 +191,9 @@ impl<const N: usize> Pairs<N> {
         }
         for gather in &self.gathers[self.gathers_of_chunk[first / CHUNK].clone()] {
             let mut sums = [[0.0_f32; GATHERED]; 3];
-            let own = pick(p, &gather.particles);
+            let own = p.pick(&gather.particles);
             for slot in &self.slots[gather.slots.clone()] {
-                let other = pick(p, &slot.neighbors);
+                let other = p.pick(&slot.neighbors);
                 for i in 0..GATHERED / S::F32_LANES {
                     let numbers = slot.numbers.each_ref().map(
                         #[inline(always)]
@@ -276,12 +276,4 @@ fn add_row<B: Block<N>, const N: usize>(numbers: [&[f32]; N], entries: Entries<&
         zy[i] += block[4];
         zz[i] += block[5];
     }
-}
-
-#[inline(always)]
-fn pick(field: &Field, particles: &[u32; GATHERED]) -> [[f32; GATHERED]; 3] {
-    field.0.each_ref().map(
-        #[inline(always)]
-        |axis| particles.map(|particle| axis[particle as usize]),
-    )
 }

@@ -83,13 +83,13 @@ impl<const SUBTRACT: bool> WithSimd for Rows<'_, SUBTRACT> {
         for gather in &layout.gathers[layout.gathers_of_chunk[first / CHUNK].clone()] {
             let slots = gather.slots.clone();
             let springs = layout.gather_slots[slots.clone()].iter().zip(&hessian.slots[slots]);
-            let own = pick(p, &gather.particles);
+            let own = p.pick(&gather.particles);
             let mut sums = [[0.0_f32; GATHERED]; 3];
             for (slot, [nx, ny, nz, beta]) in springs {
                 if slot.is_bend && !has_bends {
                     continue;
                 }
-                let [ox, oy, oz] = pick(p, &slot.neighbors);
+                let [ox, oy, oz] = p.pick(&slot.neighbors);
                 for i in 0..GATHERED {
                     let (dx, dy, dz) = (own[0][i] - ox[i], own[1][i] - oy[i], own[2][i] - oz[i]);
                     let along = nx[i] * dx + ny[i] * dy + nz[i] * dz;
@@ -139,9 +139,4 @@ impl Link<4> for SpringLink {
         );
         [force; 2]
     }
-}
-
-#[inline(always)]
-fn pick(field: &Field, particles: &[u32; GATHERED]) -> [[f32; GATHERED]; 3] {
-    field.0.each_ref().map(|axis| particles.map(|particle| axis[particle as usize]))
 }

@@ -8,7 +8,7 @@
 //! | gravity, f64 | winds u64 | velocity of each, f64 | force fields u64 | numbers of each, f64
 //! | points of colliders u64 | their positions, f64, point by point
 //! | the same where they are to be next; no points if they stay
-//! | numbers of the shape u64 | those, f64: rest lengths, pressures, welded seams
+//! | numbers of the shape u64 | those, f64: rest lengths, pressures, welded seams, creases
 //! | implicit integrators only: edges u64 | substeps u32 | step f64 | error f64
 //! |     positions and velocities before | tension f64 of each edge
 //! | XXH3-64 of all before
@@ -50,7 +50,7 @@ pub(crate) struct Checkpoint {
     pub(crate) fields: Vec<Field>,
     /// Where the points of colliders are (m), and where they are to be at the end of the next frame.
     pub(crate) colliders: [Vec<Vector>; 2],
-    /// Rest lengths, pressures and welded seams.
+    /// Rest lengths, pressures, welded seams and creases.
     pub(crate) shape: Vec<f64>,
     pub(crate) memory: Option<Memory>,
 }

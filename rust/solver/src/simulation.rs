@@ -26,6 +26,7 @@ use crate::collider::Collider;
 use crate::contact::Contacts;
 use crate::digest::digest;
 use crate::error::{Error, Result};
+use crate::fabric::Crease;
 use crate::force::Wind;
 use crate::grab::Grab;
 use crate::implicit::{Accuracy, Memory};
@@ -67,6 +68,7 @@ pub struct Simulation {
     /// The state at the start of a frame, to fall back on.
     good: State,
     good_memory: Option<Memory>,
+    good_creases: Vec<Crease>,
     method: Method,
     frame: i32,
     accuracy: Accuracy,
@@ -152,6 +154,7 @@ impl Simulation {
             seams: Seams::new(&cloths),
             good: state.clone(),
             good_memory: None,
+            good_creases: Vec::new(),
             frame: settings.first_frame,
             accuracy: Accuracy {
                 tolerance: settings.tolerance,
@@ -174,6 +177,7 @@ impl Simulation {
         simulation.follow_holds();
         simulation.follow_pins();
         simulation.shrink_from_the_first()?;
+        simulation.crease();
         simulation.intersect();
         simulation.plan()?;
         Ok(simulation)
@@ -249,6 +253,8 @@ impl Simulation {
     /// Keeps the state, to fall back on it.
     fn keep(&mut self) {
         self.good.copy_from(&self.state);
+        self.good_creases.clear();
+        self.good_creases.extend_from_slice(self.system.fabrics.creases());
         if let Some(memory) = self.method.memory() {
             self.good_memory.get_or_insert_with(|| memory.clone()).copy_from(memory);
         }
@@ -260,6 +266,7 @@ impl Simulation {
         self.contacts.take_clipped();
         self.state.copy_from(&self.good);
         self.shape(0.0, true);
+        self.system.fabrics.put_creases(&self.good_creases);
         if self.intersections.is_some_and(|count| count > 0) {
             self.intersect();
         }
@@ -299,8 +306,9 @@ impl Simulation {
                     if interrupter.take() {
                         return Some(Outcome::Interrupted);
                     }
+                    self.system.fabrics.give_way(&self.state);
                     let is_seen = watches || substep == substeps;
-                    let lost = if is_seen { state.first_lost() } else { None };
+                    let lost = if is_seen { self.state.first_lost() } else { None };
                     let too_long = (may_shorten && !is_short).then_some(Outcome::TooLong);
                     too_long.or(lost.map(Outcome::Lost))
                 });

@@ -75,29 +75,44 @@ pub(super) struct Face {
     pub(super) flat: [[f64; 2]; 3],
     /// The hinge at the edge from each corner to the next.
     pub(super) hinges: [Option<u32>; 3],
-    /// Bending stiffness (N·m) along warp and weft.
+    /// Bending stiffness (N·m) along warp and weft, as long as friction holds.
     pub(super) bend: [f64; 2],
 }
 
 impl Face {
     /// S (rad/(N·m)) at its three edges.
     fn compliance(&self) -> Matrix3<f64> {
+        let stiffness = Matrix3::from_diagonal(&components(self.bend));
+        let curvatures = self.curvatures();
+        let stiffness = self.area() * curvatures.transpose() * stiffness * curvatures;
+        stiffness.try_inverse().unwrap_or_else(Matrix3::zeros)
+    }
+
+    /// m²
+    pub(super) fn area(&self) -> f64 {
         let [a, b, c] = self.flat;
-        let area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
-        let most = self.bend[0].max(self.bend[1]);
-        let [warp, weft] = self.bend.map(|bend| bend.max(LEAST_PART * most));
-        let stiffness =
-            Matrix3::from_diagonal(&Vector3::new(warp, weft, 0.5 * (warp * weft).sqrt()));
+        0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs()
+    }
+
+    /// The curvature `(K_ww, K_ff, 2 K_wf)` of the face for each angle at its edges (1/(m rad)).
+    pub(super) fn curvatures(&self) -> Matrix3<f64> {
+        let [a, b, c] = self.flat;
+        let area = self.area();
         let curvatures = [(a, b), (b, c), (c, a)].map(|(from, to)| {
             let [w, f] = [to[0] - from[0], to[1] - from[1]];
             let length = w.hypot(f);
             // The normal of the edge is (f, -w)/length.
             Vector3::new(f * f, w * w, -2.0 * f * w) / (length * area)
         });
-        let curvatures = Matrix3::from_columns(&curvatures);
-        let stiffness = area * curvatures.transpose() * stiffness * curvatures;
-        stiffness.try_inverse().unwrap_or_else(Matrix3::zeros)
+        Matrix3::from_columns(&curvatures)
     }
+}
+
+/// The stiffness (N·m) of the curvatures `(K_ww, K_ff, 2 K_wf)`, given that along warp and weft.
+pub(super) fn components(bend: [f64; 2]) -> Vector3<f64> {
+    let most = bend[0].max(bend[1]);
+    let [warp, weft] = bend.map(|bend| bend.max(LEAST_PART * most));
+    Vector3::new(warp, weft, 0.5 * (warp * weft).sqrt())
 }
 
 /// The entries off the diagonal in the rows of a pack of hinges, and whose they are.

@@ -19,7 +19,7 @@ const ALONG: f64 = 0.1;
 pub(super) struct Hinge {
     /// The edge, then the wings: see [`hinge`].
     pub(super) corners: [u32; 4],
-    /// rad
+    /// rad, without creases.
     pub(super) rest_angle: f64,
     /// What the heights of its corners count for in its angle (1/m).
     pub(super) weights: [f64; 4],
@@ -57,7 +57,7 @@ impl Elements {
             let at = corners.map(|corner| positions[corner as usize]);
             let flat = flattened(at, warp_of(at, &fabric.warp, map));
             self.triangles.push(Triangle::new(corners.map(|corner| base + corner), flat, law));
-            self.faces.push(Face { flat, hinges: [None; 3], bend: fabric.bend });
+            self.faces.push(Face { flat, hinges: [None; 3], bend: fabric.holding_bend() });
             let pairs = [0, 1, 2].map(|i| {
                 let [a, b] = [corners[i], corners[(i + 1) % 3]];
                 [a.min(b), a.max(b)]

@@ -20,8 +20,8 @@ pub(super) type Slopes<N> = [[N; LANES]; SLOPES];
 pub(super) struct HingePack {
     pub(super) count: usize,
     corners: [Places; 4],
-    /// rad
-    rest_angles: [f64; LANES],
+    /// rad, creases included.
+    pub(super) rest_angles: [f64; LANES],
     /// Time (s) by which the stiffness is multiplied to damp.
     pub(super) times: [f64; LANES],
 }
@@ -78,6 +78,21 @@ impl HingePack {
             }
         }
         angles.copy_from_slice(&own);
+    }
+
+    /// The angles (rad) less those at rest, without damping.
+    #[inline(always)]
+    pub(super) fn angles<S: Simd>(&self, simd: S, state: &State, angles: &mut [f64; LANES]) {
+        let at = self.corners(&state.position);
+        for i in 0..LANES / S::F64_LANES {
+            let x = at.each_ref().map(
+                #[inline(always)]
+                |point| vector(simd, point, i),
+            );
+            let rest = Lanes::of(simd, vectors::<S>(&self.rest_angles)[i]);
+            let (angle, _) = angle_and_gradient(x);
+            vectors_mut::<S>(angles)[i] = the_shorter_way(angle - rest).values;
+        }
     }
 
     /// By how much a field turns each hinge.

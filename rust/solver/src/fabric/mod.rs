@@ -5,6 +5,9 @@
 
 mod compliance;
 mod coupling;
+#[cfg(test)]
+mod crease_tests;
+mod creases;
 mod elements;
 mod hinge;
 mod hinges;
@@ -17,6 +20,7 @@ mod tangent;
 mod tests;
 mod triangles;
 
+pub(crate) use creases::{CREASE, Crease};
 pub(crate) use elements::edges;
 pub use material::{Fabric, Warp};
 pub(crate) use observed::FabricScratch;
@@ -35,6 +39,7 @@ use crate::law::Spring;
 use crate::state::State;
 use compliance::{Compliance, Face};
 use coupling::Couplings;
+use creases::Yielding;
 use elements::{Elements, Hinge};
 use hinges::HingePack;
 use membrane::{MembraneLaw, Triangle};
@@ -63,6 +68,7 @@ pub(crate) struct Fabrics {
     parts: Vec<Part>,
     compliance: Compliance,
     couplings: Couplings,
+    yielding: Yielding,
     /// Triangles and hinges as they are computed: side by side.
     triangle_packs: Vec<TrianglePack>,
     hinge_packs: Vec<HingePack>,
@@ -82,7 +88,7 @@ struct Part {
 impl Fabrics {
     pub(crate) fn new(cloths: &[Cloth]) -> Self {
         let (mut laws, mut bend_times, mut parts) = (Vec::new(), Vec::new(), Vec::new());
-        let mut elements = Elements::default();
+        let (mut elements, mut yielding) = (Elements::default(), Yielding::default());
         for (cloth, base) in placed(cloths) {
             let [first, first_hinge] = [elements.triangles.len(), elements.hinges.len()];
             if let Some(fabric) = &cloth.fabric {
@@ -92,6 +98,7 @@ impl Fabrics {
                 let [stretch, shear, bend] = damping_times(fabric, density);
                 laws.push(MembraneLaw::new(fabric, [stretch, shear]));
                 bend_times.push(bend);
+                yielding.add(fabric, &elements.faces[first..], first);
             }
             let triangles = first..elements.triangles.len();
             parts.push(Part { triangles, hinges: first_hinge..elements.hinges.len() });
@@ -99,6 +106,7 @@ impl Fabrics {
         let count: usize = cloths.iter().map(|cloth| cloth.positions.len()).sum();
         let chunks = count.div_ceil(CHUNK);
         let Elements { triangles, faces, sides, hinges } = elements;
+        yielding.link(hinges.len());
         let compliance = Compliance::new(hinges.len(), &faces, |_| false);
         let mut couplings = Couplings::new(&triangles, &hinges);
         couplings.follow(&hinges, &compliance, &bend_times);
@@ -117,6 +125,7 @@ impl Fabrics {
             bend_times,
             compliance,
             couplings,
+            yielding,
             triangle_packs,
             hinge_packs,
             triangles,
@@ -139,6 +148,8 @@ impl Fabrics {
         };
         self.compliance = Compliance::new(self.hinges.len(), &self.faces, is_rigid);
         self.couplings.follow(&self.hinges, &self.compliance, &self.bend_times);
+        self.yielding.follow_pins(is_rigid);
+        self.lay_creases();
     }
 
     /// How many hinges a cloth has.
@@ -178,6 +189,32 @@ impl Fabrics {
         }
         self.triangle_packs = TrianglePack::all(&self.triangles);
         self.hinge_packs = HingePack::all(&self.hinges, &self.bend_times);
+        self.lay_creases();
+    }
+
+    /// Lets creases form and friction slip wherever the cloth is bent beyond what it bears in a state: see [`creases`].
+    pub(crate) fn give_way(&mut self, state: &State) {
+        if self.yielding.is_empty() {
+            return;
+        }
+        let Self { yielding, compliance, hinges, hinge_packs, arch, .. } = self;
+        yielding.give_way(state, compliance, hinge_packs, |hinge| hinges[hinge].rest_angle, *arch);
+    }
+
+    /// What bending has left in each face that may yield.
+    pub(crate) fn creases(&self) -> &[Crease] {
+        &self.yielding.creases
+    }
+
+    /// Takes up what [`Self::creases`] gave.
+    pub(crate) fn put_creases(&mut self, creases: &[Crease]) {
+        self.yielding.creases.copy_from_slice(creases);
+        self.lay_creases();
+    }
+
+    fn lay_creases(&mut self) {
+        let Self { yielding, hinges, hinge_packs, .. } = self;
+        yielding.lay(hinge_packs, |hinge| hinges[hinge].rest_angle);
     }
 
     /// The corners of each triangle of a cloth, and its largest stress over a width as that of its sides (N).
@@ -203,16 +240,20 @@ impl Fabrics {
                 one.area * self.laws[one.law as usize].strained(frame).energy()
             })
             .sum();
-        let angles = self.hinges.iter().map(|one| {
+        let angles = self.hinges.iter().enumerate().map(|(number, one)| {
             let at = one.corners.map(|corner| state.position.get(corner as usize));
-            hinge::the_shorter_way(hinge::angle(at) - one.rest_angle)
+            let rest = self.hinge_packs[number / LANES].rest_angles[number % LANES];
+            hinge::the_shorter_way(hinge::angle(at) - rest)
         });
         let mut angles: Vec<f64> = angles.collect();
         angles.resize(LANES * self.hinge_packs.len(), 0.0);
         let mut moments = Vec::new();
         self.compliance.moments(&angles, &mut moments, &mut compliance::Scratch::default());
         let own = parts.iter().flat_map(|part| part.hinges.clone());
-        of_membrane + own.map(|number| 0.5 * angles[number] * moments[number]).sum::<f64>()
+        let inner = parts.iter().map(|part| self.yielding.inner_energy(&part.triangles));
+        of_membrane
+            + own.map(|number| 0.5 * angles[number] * moments[number]).sum::<f64>()
+            + inner.sum::<f64>()
     }
 
     /// Bounds of the bending stiffness and damping of any motion by its mass (1/s², 1/s), near the shape at rest.
@@ -270,7 +311,7 @@ fn damping_times(fabric: &Fabric, density: f64) -> [f64; 3] {
     let speeds = [
         k * (mean(fabric.stretch) / density).sqrt(),
         k * (fabric.shear / density).sqrt(),
-        k * k * (mean(fabric.bend) / density).sqrt(),
+        k * k * (mean(fabric.holding_bend()) / density).sqrt(),
     ];
     let of = |(ratio, w): (f64, f64)| if w > 0.0 { 2.0 * ratio / w } else { 0.0 };
     let [a, b, c] = fabric.damping_ratio;

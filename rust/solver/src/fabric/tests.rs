@@ -8,7 +8,12 @@ use crate::scatter::scattered;
 use boucle_geometry::Mesh;
 
 /// A cloth whose faces are triangles.
-fn cloth(faces: &[[u32; 3]], positions: Vec<Vector>, density: f64, fabric: Fabric) -> Cloth {
+pub(super) fn cloth(
+    faces: &[[u32; 3]],
+    positions: Vec<Vector>,
+    density: f64,
+    fabric: Fabric,
+) -> Cloth {
     let mesh = Mesh::from_faces(positions.len(), faces).expect("triangles");
     let mass = Mass::Density(density);
     let material = SpringMaterial { limiter: crate::Limiter::None, ..SpringMaterial::default() };
@@ -17,7 +22,7 @@ fn cloth(faces: &[[u32; 3]], positions: Vec<Vector>, density: f64, fabric: Fabri
 }
 
 /// A grid of triangles over `size` (m), inner vertices moved by `jitter` cells.
-fn sheet(cells: [u32; 2], size: [f64; 2], jitter: f64) -> (Vec<[u32; 3]>, Vec<Vector>) {
+pub(super) fn sheet(cells: [u32; 2], size: [f64; 2], jitter: f64) -> (Vec<[u32; 3]>, Vec<Vector>) {
     let columns = cells[0] + 1;
     let mut faces = Vec::new();
     for (c, r) in (0..cells[1]).flat_map(|r| (0..cells[0]).map(move |c| (c, r))) {
@@ -40,7 +45,7 @@ fn sheet(cells: [u32; 2], size: [f64; 2], jitter: f64) -> (Vec<[u32; 3]>, Vec<Ve
     (faces, positions.collect())
 }
 
-fn uneven() -> Fabric {
+pub(super) fn uneven() -> Fabric {
     Fabric {
         stretch: [2000.0, 1200.0],
         compression: [300.0, 500.0],
@@ -48,6 +53,7 @@ fn uneven() -> Fabric {
         bend: [3e-3, 1e-3],
         damping_ratio: [0.0; 3],
         warp: Warp::Along(Vector::new(0.3, 1.0, 0.0)),
+        ..Fabric::default()
     }
 }
 
@@ -65,7 +71,7 @@ fn crumpled() -> (Cloth, State) {
     (cloth, state)
 }
 
-fn forces(fabrics: &Fabrics, state: &State) -> Vec<Vector> {
+pub(super) fn forces(fabrics: &Fabrics, state: &State) -> Vec<Vector> {
     let mut scratch = FabricScratch::default();
     fabrics.observe(state, &mut scratch);
     let mut sums: Box<ChunkVectors> = Box::new([[0.0; _]; 3]);

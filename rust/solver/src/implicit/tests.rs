@@ -452,6 +452,7 @@ fn of_fabric(positions: &[Vector], damping_ratio: f64) -> Cloth {
         bend: [2e-3, 1e-3],
         damping_ratio: [damping_ratio; 3],
         warp: crate::Warp::Along(Vector::new(0.4, 1.0, 0.0)),
+        ..crate::Fabric::default()
     };
     Cloth { positions: positions.to_vec(), ..cloth }.of_fabric(fabric).expect("a fabric")
 }

@@ -20,6 +20,7 @@ impl Simulation {
             particles.contains(&particle).then(|| state.position.get(particle))
         });
         self.gather_goals();
+        self.crease();
         self.intersect();
     }
 

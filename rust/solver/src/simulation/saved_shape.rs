@@ -2,9 +2,10 @@
 //!
 //! Of each cloth how many rest lengths and rest angles are aimed at, and those, then how many others the frame begins with, and those; none
 //! where they are as the cloth was given, or the same. Of each pressure where the frame begins and what is aimed at. Of each
-//! seam 1 if it is welded, else 0.
+//! seam 1 if it is welded, else 0. Of each face that may yield what bending has left in it.
 
 use super::Simulation;
+use crate::fabric::{CREASE, Crease};
 use crate::force::Level;
 use crate::tailoring::CLOSED;
 
@@ -14,6 +15,7 @@ pub(super) struct SavedShape {
     lengths: Vec<[Vec<f64>; 2]>,
     levels: Vec<[Level; 2]>,
     welded: Vec<bool>,
+    creases: Vec<Crease>,
 }
 
 impl Simulation {
@@ -29,6 +31,8 @@ impl Simulation {
         }
         numbers.extend(self.system.air.pressures.levels().flatten().flatten());
         numbers.extend(self.seams.welded().map(|is_welded| f64::from(u8::from(is_welded))));
+        let creases = self.system.fabrics.creases().iter();
+        numbers.extend(creases.flat_map(|crease| crease.to_numbers()));
         numbers
     }
 
@@ -56,15 +60,20 @@ impl Simulation {
         }
         let levels = numbers.take(6 * self.system.air.pressures.levels().count())?;
         let welded = numbers.take(self.seams.welded().count())?;
-        if !numbers.0.is_empty() || !levels.iter().all(|number| number.is_finite()) {
+        let creases = numbers.take(CREASE * self.system.fabrics.creases().len())?;
+        let is_finite = |number: &f64| number.is_finite();
+        if !numbers.0.is_empty() || !levels.iter().chain(creases).all(is_finite) {
             return None;
         }
+        let creases = creases.as_chunks().0.iter().copied().map(Crease::from_numbers).collect();
         let levels = levels.as_chunks::<3>().0.as_chunks::<2>().0.to_vec();
-        Some(SavedShape { lengths, levels, welded: welded.iter().map(|w| *w > 0.0).collect() })
+        let welded = welded.iter().map(|w| *w > 0.0).collect();
+        Some(SavedShape { lengths, levels, welded, creases })
     }
 
     /// Takes the shape of a checkpoint up.
-    pub(super) fn take_shape(&mut self, SavedShape { lengths, levels, welded }: SavedShape) {
+    pub(super) fn take_shape(&mut self, shape: SavedShape) {
+        let SavedShape { lengths, levels, welded, creases } = shape;
         self.system.air.pressures.restore(&levels);
         let Self { seams, cloths, system, .. } = self;
         if seams.jump(welded.into_iter(), cloths, &mut system.layout) {
@@ -79,6 +88,7 @@ impl Simulation {
                 self.put_rest(cloth, 0.0);
             }
         }
+        self.system.fabrics.put_creases(&creases);
     }
 }
 

@@ -97,6 +97,12 @@ impl Simulation {
         Ok(())
     }
 
+    /// Creases cloth that is put somewhere, as far as it is bent there.
+    pub(super) fn crease(&mut self) {
+        let Self { threads, system, state, .. } = self;
+        threads.install(|| system.fabrics.give_way(state));
+    }
+
     /// Takes rest lengths, pressures and the force of seams after a part of the frame.
     pub(super) fn shape(&mut self, part: f64, is_start: bool) {
         for cloth in 0..self.rests.len() {

@@ -59,6 +59,7 @@ fn droop(gamma: f64, jitter: f64, warp: Vector) -> f64 {
         bend: [bend; 2],
         damping_ratio: [0.02, 0.02, 0.5],
         warp: Warp::Along(warp),
+        ..Fabric::default()
     };
     let gravity = gamma * bend / (density * length.powi(3));
     let mut cloth = of_fabric(mesh, positions, &Mass::Density(density), fabric);
@@ -114,6 +115,7 @@ fn tumbling(integrator: IntegratorKind, step_size: StepSize) -> Simulation {
         bend: [1e-4, 5e-5],
         damping_ratio: [0.0; 3],
         warp: Warp::Along(Vector::y()),
+        ..Fabric::default()
     };
     let cloth = of_fabric(grid_mesh(n, n), positions.clone(), &Mass::Density(0.2), fabric);
     let settings = Settings {

@@ -10,6 +10,9 @@
 //! shear = 100.0                   # N/m
 //! bend_warp = 2e-5                # N·m
 //! bend_weft = 2e-5
+//! yield_curvature = 200.0         # 1/m, elastic curvature beyond which a crease stays; missing: nothing stays
+//! hardening = 0.0                 # slope of the moment beyond it, as a part of the bending stiffness
+//! bend_hysteresis = 0.0           # N·m/m, 2HB of the KES-FB2: how wide the loop of moment over curvature is
 //! damping_ratio = 0.02            # of the critical, at a wavelength of 0.1 m; or damping_ratio_stretch, _shear, _bend
 //! warp = [0.0, 1.0, 0.0]          # which way the warp runs; or "uv": where v of the mesh's UV coordinates grows
 //! air_damping = 0.0               # N·s/m, viscous, every particle
@@ -52,6 +55,12 @@ pub struct FabricDescription {
     pub bend_warp: Option<f64>,
     /// Bending stiffness (N·m) of curvature along the weft.
     pub bend_weft: Option<f64>,
+    /// Elastic curvature (1/m) beyond which a crease stays; nothing stays if missing.
+    pub yield_curvature: Option<f64>,
+    /// Slope of the moment beyond it, as a part of the bending stiffness.
+    pub hardening: f64,
+    /// 2HB of the KES-FB2 (N·m/m): how wide the loop of the moment by width over the curvature is.
+    pub bend_hysteresis: f64,
     /// Damping of every mode that names none, as a part of the critical.
     pub damping_ratio: Option<f64>,
     /// Damping of stretch.
@@ -105,6 +114,9 @@ impl FabricDescription {
                 number(self.bend_warp, |preset| preset.bend_warp, default.bend[0]),
                 number(self.bend_weft, |preset| preset.bend_weft, default.bend[1]),
             ],
+            yield_curvature: self.yield_curvature,
+            hardening: self.hardening,
+            bend_hysteresis: self.bend_hysteresis,
             damping_ratio: ratios.map(|ratio| ratio.unwrap_or(all)),
             warp: match self.warp {
                 Some(WarpDescription::Along(warp)) => Warp::Along(Vector::from(warp)),

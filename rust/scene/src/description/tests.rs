@@ -608,11 +608,27 @@ fn a_named_fabric_gives_what_the_scene_does_not_say() {
 }
 
 #[test]
+fn a_fabric_creases_and_rubs_as_the_scene_says_and_else_not() {
+    let changes =
+        ["fabric.yield_curvature=120", "fabric.hardening=0.2", "fabric.bend_hysteresis=3e-4"];
+    let changes = changes.map(|change| format!("cloth.0.{change}"));
+    for (changes, expected) in [(&changes[..], (Some(120.0), 0.2, 3e-4)), (&[], (None, 0.0, 0.0))] {
+        let scene = Scene::from_toml(GOOD, changes).expect("a good scene");
+        let fabric = scene.cloth[0].fabric.fabric();
+        assert_eq!((fabric.yield_curvature, fabric.hardening, fabric.bend_hysteresis), expected);
+    }
+}
+
+#[test]
 fn fabrics_that_cannot_be_are_refused() {
     for (change, expected) in [
         ("cloth.0.fabric.preset=demin", "cloth.flag.fabric.preset = \"demin\""),
         ("cloth.0.fabric.stretch_warp=-1", "cloth.flag.fabric.stretch_warp (N/m)"),
         ("cloth.0.fabric.bend_weft=nan", "cloth.flag.fabric.bend_weft (N·m)"),
+        ("cloth.0.fabric.yield_curvature=-1", "cloth.flag.fabric.yield_curvature (1/m) = -1; acc"),
+        ("cloth.0.fabric.hardening=1", "cloth.flag.fabric.hardening = 1; accepted: 0 to 0.99"),
+        ("cloth.0.fabric.bend_hysteresis=nan", "cloth.flag.fabric.bend_hysteresis (N·m/m) = NaN"),
+        ("cloth.0.fabric.bend_hysteresis=-1", "cloth.flag.fabric.bend_hysteresis (N·m/m) = -1; a"),
         ("cloth.0.fabric.deformation_rate=1", "cloth.flag.fabric.deformation_rate"),
         ("cloth.0.fabric.limiter=stiffen", "cloth.flag.fabric.limiter = \"stiffen\""),
         ("cloth.0.fabric.warp=[0,0,0]", "cloth.flag.fabric.warp = [0, 0, 0]; accepted: a direc"),

@@ -10,7 +10,7 @@ use crate::reference::{ELASTICA, Table};
 use crate::sheets::{grid_mesh, grid_positions, run, scattered};
 
 /// A cloth of fabric without a limiter.
-fn of_fabric(mesh: Mesh, positions: Vec<Vector>, mass: &Mass, fabric: Fabric) -> Cloth {
+pub(crate) fn of_fabric(mesh: Mesh, positions: Vec<Vector>, mass: &Mass, fabric: Fabric) -> Cloth {
     let material = SpringMaterial { limiter: Limiter::None, ..SpringMaterial::default() };
     let made = Cloth::from_mesh("sheet", mesh, positions, mass, material, Vec::new());
     made.and_then(|cloth| cloth.of_fabric(fabric)).expect("a cloth of fabric")
@@ -136,7 +136,7 @@ fn tumbling(integrator: IntegratorKind, step_size: StepSize) -> Simulation {
     simulation
 }
 
-fn energy(simulation: &Simulation) -> f64 {
+pub(crate) fn energy(simulation: &Simulation) -> f64 {
     let certificate = simulation.certificate();
     certificate.kinetic_energy + certificate.potential_energy
 }

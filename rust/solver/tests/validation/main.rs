@@ -10,6 +10,7 @@ mod contact_friction;
 mod contact_rules;
 mod contact_scenes;
 mod contact_things;
+mod creases;
 mod determinism;
 mod drag;
 mod dynamics;

@@ -25,6 +25,9 @@ KEYS = (
     "density",
     *(f"{law}_{way}" for law in ("stretch", "compression", "bend") for way in sheet.YARNS),
     "shear",
+    "yield_curvature",
+    "hardening",
+    "bend_hysteresis",
 )
 """Numbers that --set changes."""
 SUMMARY = (

@@ -29,6 +29,7 @@ SAMPLED_ONCE = (
     "stretch", "shear", "bend", "damping", "damping_stretch", "damping_shear", "damping_bend",
     "stretch_warp", "stretch_weft", "compression_warp", "compression_weft", "bend_warp", "bend_weft",
     "damping_ratio", "damping_ratio_stretch", "damping_ratio_shear", "damping_ratio_bend",
+    "yield_curvature", "hardening", "bend_hysteresis",
     "air_damping", "deformation_rate", "density", "mass_per_vertex", "wind_coefficient",
     "wind_air_density", "thickness", "friction", "pin_damping",
 )  # fmt: skip

@@ -20,6 +20,8 @@ _WORDS = {
     "stretch_weft": "stretch stiffness along the weft",
     "bend_warp": "bend stiffness along the warp",
     "bend_weft": "bend stiffness along the weft",
+    "yield_curvature": "curvature beyond which it creases",
+    "hardening": "crease hardening",
     "mass_per_vertex": "mass per vertex",
     "name": "",
     "self": "self collision",

@@ -207,6 +207,10 @@ def _fabric(name: str, values: Values) -> dict[str, Any]:
         keys += ["damping_ratio_stretch", "damping_ratio_shear", "damping_ratio_bend"]
     else:
         keys.append("damping_ratio")
+    if values["yield_curvature"] > 0.0:
+        keys += ["yield_curvature", "hardening"]
+    if values["bend_hysteresis"] > 0.0:
+        keys.append("bend_hysteresis")
     fabric = {key: decimal(values[key]) for key in (*keys, "air_damping", "deformation_rate")}
     warp = values["warp"]
     fabric["warp"] = UV if warp == UV else [float(axis == warp) for axis in "xyz"]

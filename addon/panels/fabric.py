@@ -53,7 +53,7 @@ class BOUCLE_PT_fabric_stiffness(_FabricPanel, Panel):
 
 
 class BOUCLE_PT_fabric_bending(_FabricPanel, Panel):
-    """Stiffness of the fabric against bending"""
+    """Stiffness of the fabric against bending, and what stays of a bend"""
 
     bl_idname = Panels.FABRIC_BENDING
     bl_parent_id = Panels.FABRIC
@@ -66,6 +66,10 @@ class BOUCLE_PT_fabric_bending(_FabricPanel, Panel):
         column = self.column(settings)
         column.prop(settings, "bend_warp_micro", text="Warp")
         column.prop(settings, "bend_weft_micro", text="Weft")
+        column.prop(settings, "yield_curvature", text="Crease Beyond (1/m)")
+        if settings.yield_curvature > 0.0:
+            column.prop(settings, "hardening")
+        column.prop(settings, "bend_hysteresis", text="Hysteresis (N·m/m)")
 
 
 class BOUCLE_PT_fabric_damping(_FabricPanel, Panel):

@@ -70,6 +70,27 @@ class FabricProperties:
         default=2e-5, min=0.0, max=_LARGEST, soft_max=1e-3, precision=6,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
+    yield_curvature: FloatProperty(
+        name="Crease Beyond",
+        description="Curvature beyond which a bend stays as a crease (1/m: 100 is a bend of 1 cm radius); 0 for never",
+        default=0.0, min=0.0, max=_LARGEST, soft_max=1000.0, precision=1, step=100,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    hardening: FloatProperty(
+        name="Crease Hardening",
+        description="How much stiffness is left beyond that, as a fraction: at 0 all of a further bend stays",
+        default=0.0, min=0.0, max=0.99, precision=2, step=1,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    bend_hysteresis: FloatProperty(
+        name="Bend Hysteresis",
+        description=(
+            "Friction of yarns as the fabric bends (N·m/m): the 2HB that the KES bending tester reads; "
+            "1 gf·cm/cm is 0.0098"
+        ),
+        default=0.0, min=0.0, max=_LARGEST, soft_max=0.01, precision=5, step=0.01,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
     damping_ratio: FloatProperty(
         name="Damping Ratio",
         description="Damping of every motion, as a fraction of the critical at a wavelength of 0.1 m",

@@ -42,6 +42,8 @@ def figures(sheet: Sheet) -> Iterator[tuple[str, Figure]]:
         yield "tensile", tensile_figure(sheet)
     if sheet.shear:
         yield "shear", shear_figure(sheet)
+    if sheet.bending:
+        yield "bending", bending_figure(sheet)
     if sheet.cantilever:
         yield "cantilever", cantilever_figure(sheet)
     if sheet.drapes:
@@ -80,6 +82,20 @@ def shear_figure(sheet: Sheet) -> Figure:
     axes.plot(angles, law, color=INK, ls=DASHED, lw=1.0, label="G sin a of the preset")
     axes.set(xlabel="angle (degrees)", ylabel="shear stress (N/m)")
     axes.set_title("picture frame", fontsize=10.5)
+    axes.legend()
+    return drawing
+
+
+def bending_figure(sheet: Sheet) -> Figure:
+    """The loops of the moment over the curvature."""
+    drawing = page(3.6)
+    axes = drawing.subplots()
+    for way, read in sheet.bending.items():
+        words = f"{way}: B {1e6 * read.rigidity:.3g} µN·m, 2HB {1e3 * read.width:.3g} mN·m/m"
+        moments = 1e3 * np.array(read.moments)
+        axes.plot(0.01 * np.array(read.curvatures), moments, color=COLORS[way], label=words)
+    axes.set(xlabel="curvature (1/cm)", ylabel="moment over width (mN·m/m)")
+    axes.set_title("pure bending, KES-FB2", fontsize=10.5)
     axes.legend()
     return drawing
 

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from . import cantilever, drape, shear, tensile
+from . import bending, cantilever, drape, shear, tensile
+from .bending import Bending
 from .cantilever import Cantilever
 from .cutting import Kind
 from .drape import Drape
@@ -16,7 +17,7 @@ from .fabric import Fabric
 from .shear import Shear
 from .tensile import Tensile
 
-INSTRUMENTS = ("tensile", "shear", "cantilever", "drape")
+INSTRUMENTS = ("tensile", "shear", "bending", "cantilever", "drape")
 DIRECTIONS = ("warp", "weft", "bias")
 YARNS = ("warp", "weft")
 HEADINGS = ("quantity", "unit", "warp", "weft", "bias", "method", "preset's own")
@@ -42,6 +43,7 @@ class Sheet:
     order: Order
     tensile: dict[str, Tensile] = field(default_factory=dict)
     shear: dict[str, Shear] = field(default_factory=dict)
+    bending: dict[str, Bending] = field(default_factory=dict)
     cantilever: dict[str, Cantilever] = field(default_factory=dict)
     drapes: list[Drape] = field(default_factory=list)
 
@@ -64,9 +66,11 @@ def measure(fabric: Fabric, order: Order, say: Callable[[str], None] = lambda _:
     for name, directions in (
         ("tensile", DIRECTIONS),
         ("shear", YARNS),
+        ("bending", YARNS),
         ("cantilever", DIRECTIONS),
     ):
-        instrument = {"tensile": tensile, "shear": shear, "cantilever": cantilever}[name]
+        instruments = {"tensile": tensile, "shear": shear, "bending": bending}
+        instrument = instruments.get(name, cantilever)
         for direction in directions if name in order.instruments else ():
             say(f"{name}, {direction}")
             read = instrument.measure(fabric, direction, kind=order.kind, **finely)
@@ -80,7 +84,8 @@ def measure(fabric: Fabric, order: Order, say: Callable[[str], None] = lambda _:
 
 def rows(sheet: Sheet) -> list[tuple[str, ...]]:
     """The lines of the table, as HEADINGS has them."""
-    return [*tensile_rows(sheet), *shear_rows(sheet), *cantilever_rows(sheet), *drape_rows(sheet)]
+    parts = (tensile_rows, shear_rows, bending_rows, cantilever_rows, drape_rows)
+    return [row for part in parts for row in part(sheet)]
 
 
 def line(
@@ -168,6 +173,29 @@ def shear_rows(sheet: Sheet) -> list[tuple[str, ...]]:
             {way: one.kes * shear.KES_UNIT for way, one in read.items()},
             "KES-FB1, 0.5° to 2.5°",
             in_grams,
+        ),
+    ]
+
+
+def bending_rows(sheet: Sheet) -> list[tuple[str, ...]]:
+    """B and 2HB of KES-FB2."""
+    read = sheet.bending
+    if not read:
+        return []
+    return [
+        line(
+            "bending stiffness B",
+            "µN·m",
+            {way: 1e6 * one.rigidity for way, one in read.items()},
+            "KES-FB2, 0.5 to 1.5 /cm",
+            [1e6 * one.expected for one in read.values()],
+        ),
+        line(
+            "bending hysteresis 2HB",
+            "mN·m/m",
+            {way: 1e3 * one.width for way, one in read.items()},
+            "KES-FB2, 0.5 /cm",
+            [1e3 * one.expected_width for one in read.values()],
         ),
     ]
 
@@ -263,6 +291,16 @@ def numbers(sheet: Sheet) -> dict[str, Any]:
                 "curve": [list(pair) for pair in zip(one.degrees, one.stresses, strict=True)],
             }
             for way, one in sheet.shear.items()
+        },
+        "bending": {
+            way: {
+                "rigidity": one.rigidity,
+                "expected": one.expected,
+                "hysteresis": one.width,
+                "expected_hysteresis": one.expected_width,
+                "curve": [list(pair) for pair in zip(one.curvatures, one.moments, strict=True)],
+            }
+            for way, one in sheet.bending.items()
         },
         "cantilever": {
             way: {

@@ -11,6 +11,7 @@ DESIGN_NAMES = {
     "use_tension", "model", "stretch_warp", "stretch_weft", "use_compression", "compression_warp",
     "compression_weft", "bend_warp", "bend_weft", "damping_ratio", "damping_ratio_per_kind",
     "damping_ratio_stretch", "damping_ratio_shear", "damping_ratio_bend", "warp", "warp_uv_map",
+    "yield_curvature", "hardening", "bend_hysteresis",
     "overlay", "overlay_range", "overlay_minimum", "overlay_maximum", "overlay_opacity",
 }  # fmt: skip
 
@@ -49,6 +50,8 @@ def test_every_setting_is_overridable_described_and_bounded(blender):
         "stretch_warp": "(N/m)",
         "bend_warp": "(N·m)",
         "bend_warp_micro": "(µN·m",
+        "yield_curvature": "(1/m",
+        "bend_hysteresis": "(N·m/m)",
         "damping": "(N·s/m)",
         "density": "(kg/m²)",
         "mass_per_vertex": "(kg)",
@@ -179,6 +182,7 @@ def draw_everything():
     obj.boucle.model, obj.boucle.warp = "fabric", "uv"
     bpy.ops.boucle.apply_preset(preset="denim")
     draw_panels()
+    obj.boucle.yield_curvature = 100.0
     obj.boucle.use_compression = obj.boucle.damping_ratio_per_kind = True
     draw_panels()
 

@@ -211,6 +211,7 @@ FABRIC = {
     "bend_weft": 1e-5, "use_compression": False, "compression_warp": 10.0, "compression_weft": 20.0,
     "damping_ratio": 0.02, "damping_ratio_per_kind": False, "damping_ratio_stretch": 0.1,
     "damping_ratio_shear": 0.2, "damping_ratio_bend": 0.3, "warp": "z", "warp_uv_map": "",
+    "yield_curvature": 0.0, "hardening": 0.25, "bend_hysteresis": 0.0,
 }  # fmt: skip
 TURNED = (0.0, 0.0, 2.0, 7.0, 0.0, 1.0, 0.0, 7.0, -2.0, 0.0, 0.0, 7.0)
 """The local z axis to x, and twice as long."""
@@ -228,7 +229,10 @@ def test_fabric_has_the_keys_of_its_table_and_the_solver_takes_them():
     fabric = described(**own)["cloth"][0]["fabric"]
     assert fabric["compression_weft"] == 20.0 and fabric["damping_ratio_bend"] == 0.3
     assert "damping_ratio" not in fabric
-    for values in (FABRIC, own):
+    creased = {**FABRIC, "yield_curvature": 150.0, "bend_hysteresis": 5.00000024e-4}
+    fabric = described(**creased)["cloth"][0]["fabric"]
+    assert [fabric[key] for key in ("yield_curvature", "hardening", "bend_hysteresis")] == [150.0, 0.25, 5e-4]
+    for values in (FABRIC, own, creased):
         scene = described(**{**values, "integrator": "bdf2"})
         simulation(scene).advance()
 

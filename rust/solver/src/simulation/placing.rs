@@ -5,8 +5,8 @@ use boucle_geometry::Vector;
 use super::Simulation;
 
 impl Simulation {
-    /// Puts the vertices of a cloth at these positions (m), at rest, and its hard pins with them. Rest lengths stay, and so
-    /// does what draws soft pins.
+    /// Puts the vertices of a cloth at these positions (m), at rest, and its hard pins with them. Rest lengths and creases
+    /// stay, and so does what draws soft pins.
     pub fn set_positions(&mut self, cloth: usize, positions: &[Vector]) {
         let particles = self.particles(cloth);
         for (particle, position) in particles.clone().zip(positions) {
@@ -20,7 +20,6 @@ impl Simulation {
             particles.contains(&particle).then(|| state.position.get(particle))
         });
         self.gather_goals();
-        self.crease();
         self.intersect();
     }
 

@@ -97,7 +97,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Creases cloth that is put somewhere, as far as it is bent there.
+    /// Creases cloth that starts from another shape than that at rest.
     pub(super) fn crease(&mut self) {
         let Self { threads, system, state, .. } = self;
         threads.install(|| system.fabrics.give_way(state));

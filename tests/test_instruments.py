@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import measure
-from instruments import cantilever, cutting, drape, resting, shear, sheet, tensile
+from instruments import bending, cantilever, cutting, drape, resting, shear, sheet, tensile
 from instruments.elastica import FLAT_TIP, gamma_of_chord, profile
 from instruments.fabric import Fabric
 from instruments.resting import Load, Restless, Specimen, settle
@@ -77,6 +77,34 @@ def test_a_frame_shears_with_the_stiffness_of_its_fabric(direction, kind):
     law = DENIM.number("shear") * np.sin(np.radians(read.degrees))
     assert read.stresses == pytest.approx(law, rel=2e-3)
     assert read.kes == pytest.approx(DENIM.number("shear"), rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("kind", "direction"), [("grid", "warp"), ("grid", "weft"), ("delaunay", "warp")]
+)
+def test_kes_reads_the_stiffness_and_the_hysteresis_of_its_fabric(kind, direction):
+    width = 1e-3
+    read = bending.measure(Fabric("denim", {"bend_hysteresis": width}), direction, 8, kind)
+    assert abs(read.error) < 0.015
+    assert read.width == pytest.approx(width, rel=0.02)
+    # Friction turns over within 50 /m, so that the loop is a parallelogram.
+    moments, curvatures = (np.array(of[bending.STEPS :]) for of in (read.moments, read.curvatures))
+    loop = 0.5 * np.dot(moments[1:] + moments[:-1], np.diff(curvatures))
+    assert loop == pytest.approx(width * (2.0 * bending.MOST - 50.0), rel=0.02)
+    stiffness = (read.moments[1] - read.moments[0]) / read.curvatures[1]
+    assert stiffness == pytest.approx(read.expected + width / 50.0, rel=0.02)
+
+
+@pytest.mark.parametrize("kind", ["grid", "delaunay"])
+def test_kes_reads_no_hysteresis_of_an_elastic_fabric_and_a_plateau_of_one_that_creases(kind):
+    elastic = bending.measure(DENIM, "weft", 8, kind)
+    assert abs(elastic.error) < 0.015
+    assert abs(elastic.width) < 1e-4 * max(elastic.moments)
+    creased = bending.measure(Fabric("denim", {"yield_curvature": 150.0}), "weft", 8, kind)
+    assert max(creased.moments) == pytest.approx(150.0 * creased.expected, rel=0.01)
+    # What clamps bend by 250 /m keeps 100 /m: there it feels no moment.
+    flat = np.interp(0.0, creased.moments[100:49:-1], creased.curvatures[100:49:-1])
+    assert flat == pytest.approx(100.0, rel=0.02)
 
 
 @pytest.mark.parametrize(
@@ -192,12 +220,15 @@ def test_a_specimen_that_gains_energy_goes_on_with_shorter_steps():
 
 def test_a_sheet_tells_what_was_read_beside_the_preset(tmp_path, capsys):
     words = ["cotton_poplin", "--instrument", "shear", "--cells", "8", "--out", str(tmp_path)]
+    words += ["--instrument", "bending", "--set", "bend_hysteresis=5e-4"]
     assert measure.main([*words, "--set", "shear=60"]) == 0
     printed = capsys.readouterr().out
     assert "Cotton poplin" in printed
     assert "picture frame" in printed
     numbers = json.loads((tmp_path / "cotton_poplin" / "numbers.json").read_text(encoding="utf-8"))
-    assert numbers["changes"] == {"shear": 60.0}
+    assert numbers["changes"] == {"bend_hysteresis": 5e-4, "shear": 60.0}
+    assert numbers["bending"]["weft"]["hysteresis"] == pytest.approx(5e-4, rel=0.02)
+    assert (tmp_path / "cotton_poplin" / "bending.png").stat().st_size > 10_000
     assert numbers["shear"]["warp"]["stiffness"] == pytest.approx(60.0, rel=2e-3)
     assert numbers["tensile"] == {}
     assert (tmp_path / "cotton_poplin" / "shear.png").stat().st_size > 10_000

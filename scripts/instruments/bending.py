@@ -89,7 +89,9 @@ def rolled(rest: np.ndarray, curvature: float, cell: float) -> np.ndarray:
     out, up = (np.cumsum([0.0, *(cell * turn)]) for turn in (np.cos(headings), np.sin(headings)))
     middle = np.interp(0.5 * LENGTH, edges, out), np.interp(0.5 * LENGTH, edges, up)
     along = rest[:, 0]
-    x, z = (np.interp(along, edges, of) - shift for of, shift in zip((out, up), middle, strict=True))
+    x, z = (
+        np.interp(along, edges, of) - shift for of, shift in zip((out, up), middle, strict=True)
+    )
     return np.column_stack([x, rest[:, 1], z])
 
 

@@ -231,7 +231,11 @@ def test_fabric_has_the_keys_of_its_table_and_the_solver_takes_them():
     assert "damping_ratio" not in fabric
     creased = {**FABRIC, "yield_curvature": 150.0, "bend_hysteresis": 5.00000024e-4}
     fabric = described(**creased)["cloth"][0]["fabric"]
-    assert [fabric[key] for key in ("yield_curvature", "hardening", "bend_hysteresis")] == [150.0, 0.25, 5e-4]
+    assert [fabric[key] for key in ("yield_curvature", "hardening", "bend_hysteresis")] == [
+        150.0,
+        0.25,
+        5e-4,
+    ]
     for values in (FABRIC, own, creased):
         scene = described(**{**values, "integrator": "bdf2"})
         simulation(scene).advance()

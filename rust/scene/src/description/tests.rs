@@ -592,7 +592,9 @@ fn fields_come_as_json_from_frame_to_frame() {
 
 #[test]
 fn a_named_fabric_gives_what_the_scene_does_not_say() {
-    let changes = ["model=fabric", "fabric.preset=denim", "fabric.shear=7"];
+    let creased = ["fabric.yield_curvature=120", "fabric.bend_hysteresis=3e-4"];
+    let changes =
+        [&["model=fabric", "fabric.preset=denim", "fabric.shear=7"][..], &creased].concat();
     let changes: Vec<String> = changes.iter().map(|change| format!("cloth.0.{change}")).collect();
     let scene = Scene::from_toml(GOOD, &changes).expect("a good scene");
     let cloth = &scene.cloth[0];
@@ -605,18 +607,8 @@ fn a_named_fabric_gives_what_the_scene_does_not_say() {
     assert_eq!(bits(&fabric.compression), bits(&compression));
     let rate = cloth.fabric.material().deformation_rate;
     assert_eq!(bits(&[rate]), bits(&[denim.deformation_rate]));
-}
-
-#[test]
-fn a_fabric_creases_and_rubs_as_the_scene_says_and_else_not() {
-    let changes =
-        ["fabric.yield_curvature=120", "fabric.hardening=0.2", "fabric.bend_hysteresis=3e-4"];
-    let changes = changes.map(|change| format!("cloth.0.{change}"));
-    for (changes, expected) in [(&changes[..], (Some(120.0), 0.2, 3e-4)), (&[], (None, 0.0, 0.0))] {
-        let scene = Scene::from_toml(GOOD, changes).expect("a good scene");
-        let fabric = scene.cloth[0].fabric.fabric();
-        assert_eq!((fabric.yield_curvature, fabric.hardening, fabric.bend_hysteresis), expected);
-    }
+    let said = (fabric.yield_curvature, fabric.hardening, fabric.bend_hysteresis);
+    assert_eq!(said, (Some(120.0), 0.0, 3e-4));
 }
 
 #[test]

@@ -96,7 +96,7 @@ class Simulation:
         """How many points a collider has: those of its mesh, 1 of a sphere, 2 of a plane or capsule, 8 of a box."""
 
     def set_positions(self, cloth: int, positions: Buffer) -> None:
-        """Put the vertices at positions (m), float32 or float64 (n, 3), at rest; the rest lengths stay."""
+        """Put the vertices at positions (m), float32 or float64 (n, 3), at rest; rest lengths and creases stay."""
 
     def set_pin_targets(self, cloth: int, targets: Buffer) -> None:
         """Say where pins go: they reach it in a straight line at the end of the next frame.

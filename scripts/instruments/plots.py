@@ -91,7 +91,10 @@ def bending_figure(sheet: Sheet) -> Figure:
     drawing = page(3.6)
     axes = drawing.subplots()
     for way, read in sheet.bending.items():
-        words = f"{way}: B {1e6 * read.rigidity:.3g} µN·m, 2HB {1e3 * read.width:.3g} mN·m/m"
+        words = (
+            f"{way}: B {figure(1e6 * read.rigidity, 3)} µN·m, "
+            f"2HB {figure(1e3 * read.width, 3)} mN·m/m"
+        )
         moments = 1e3 * np.array(read.moments)
         axes.plot(0.01 * np.array(read.curvatures), moments, color=COLORS[way], label=words)
     axes.set(xlabel="curvature (1/cm)", ylabel="moment over width (mN·m/m)")

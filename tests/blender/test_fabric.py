@@ -365,3 +365,49 @@ def test_fabric_and_springs_are_baked_together_and_collide(blender):
     assert result["with"] == ["Lower"]
     assert result["fell"] < 0.1 and result["gap"] > 0.02, result
     assert all(status.startswith("Baked") for status in result["statuses"])
+
+
+def creased():
+    import bpy
+    from cloths import add_cloth, addon, farthest, play, shown_positions
+
+    scene = bpy.context.scene
+    scene.gravity = (0.0, -5.0, -8.0)
+    out, shown = {"words": []}, {}
+    for name, values in {
+        "elastic": {},
+        "creased": {"yield_curvature": 0.3},
+        "rubbing": {"bend_hysteresis": 0.2},
+    }.items():
+        obj = add_cloth(columns=7, rows=5, end=8, model="fabric", bend_warp=1e-2, bend_weft=1e-2)
+        for key, value in values.items():
+            setattr(obj.boucle, key, value)
+        play(1, 8)
+        out[name] = obj.boucle.status
+        shown[name] = shown_positions(obj)
+        bpy.ops.boucle.bake()
+        scene.frame_set(8)
+        out[name + " baked"] = farthest(shown_positions(obj), shown[name])
+        obj.boucle.yield_curvature, obj.boucle.hardening = 30.0, 0.1
+        obj.boucle.bend_hysteresis = 1e-3
+        out["words"].append(addon("bridge.cache").drift_of(obj, scene, in_full=True))
+        obj.boucle.keyframe_insert("yield_curvature", frame=1)
+        obj.boucle.yield_curvature = 40.0
+        obj.boucle.keyframe_insert("yield_curvature", frame=5)
+        bpy.ops.boucle.check(select=False)
+        out["animated"] = obj.boucle.problems
+        bpy.data.objects.remove(obj)
+    for name in ("creased", "rubbing"):
+        out[name + " apart"] = farthest(shown[name], shown["elastic"])
+    return out
+
+
+def test_fabric_creases_and_rubs_live_and_baked_and_changes_are_told(blender):
+    result = blender.run(creased)
+    for name in ("elastic", "creased", "rubbing"):
+        assert result[name].startswith("Live")
+        assert result[name + " baked"] < 1e-6
+    assert result["creased apart"] > 1e-4 and result["rubbing apart"] > 1e-4
+    words = ["bend hysteresis", "crease hardening", "curvature beyond which it creases"]
+    assert [sorted(found) for found in result["words"]] == [words] * 3
+    assert "yield_curvature is animated" in result["animated"]

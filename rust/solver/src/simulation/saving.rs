@@ -89,22 +89,48 @@ impl Simulation {
 mod tests {
     use super::*;
     use crate::cloth::{Cloth, Mass};
+    use crate::fabric::Fabric;
     use crate::force::Pressure;
     use crate::implicit::Memory;
     use crate::material::SpringMaterial;
     use crate::settings::Settings;
     use boucle_geometry::{Mesh, Vector};
 
-    fn inflated() -> Simulation {
+    fn of(change: impl Fn(Cloth) -> Cloth) -> Simulation {
         let mesh = Mesh::from_faces(4, &[[0, 1, 2], [0, 2, 3]]).expect("a mesh");
         let positions = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let positions = positions.map(|[x, y]| Vector::new(x, y, 0.0)).to_vec();
         let (mass, material) = (Mass::Density(0.2), SpringMaterial::default());
         let cloth = Cloth::from_mesh("c", mesh, positions, &mass, material, vec![0]);
-        let pressure = Some(Pressure { uniform: 1.0, ..Pressure::default() });
-        let cloth = Cloth { pressure, ..cloth.expect("a cloth") };
         let settings = Settings { threads: 1, ..Settings::default() };
-        Simulation::new(vec![cloth], Vec::new(), settings).expect("a simulation")
+        let cloths = vec![change(cloth.expect("a cloth"))];
+        Simulation::new(cloths, Vec::new(), settings).expect("a simulation")
+    }
+
+    fn inflated() -> Simulation {
+        let pressure = Some(Pressure { uniform: 1.0, ..Pressure::default() });
+        of(|cloth| Cloth { pressure: pressure.clone(), ..cloth })
+    }
+
+    /// Of each of the two faces, six numbers.
+    #[test]
+    fn creases_that_do_not_fit_are_refused() {
+        let fabric = Fabric { bend_hysteresis: 1e-3, ..Fabric::default() };
+        let mut simulation = of(|cloth| cloth.of_fabric(fabric.clone()).expect("a fabric"));
+        let before = simulation.checkpoint();
+        let spoils: [fn(&mut Vec<f64>); 3] = [
+            |shape| shape.truncate(8),
+            |shape| shape.push(0.0),
+            |shape| shape.last_mut().into_iter().for_each(|number| *number = f64::INFINITY),
+        ];
+        for spoil in spoils {
+            let mut bad = Checkpoint::from_bytes(&before).expect("a whole one");
+            assert_eq!(bad.shape.len(), 2 + 2 * 6);
+            spoil(&mut bad.shape);
+            let refused = simulation.restore(&bad.to_bytes());
+            assert!(matches!(refused, Err(Error::BadCheckpoint(_))), "{refused:?}");
+        }
+        assert!(simulation.checkpoint() == before);
     }
 
     /// Each is whole by its checksum, and of the same scene by its digest.

@@ -204,3 +204,13 @@ fn creases_go_with_a_rest_shape_that_changes() {
         assert_close("curvature (1/m)", curvature(&simulation), left + more, 0.01);
     }
 }
+
+#[test]
+fn a_frame_that_is_lost_leaves_creases_as_they_were() {
+    let safe = tumbling(yielding(), &by(IntegratorKind::Verlet, StepSize::Auto)).safe_time_step();
+    let settings = by(IntegratorKind::Verlet, StepSize::Seconds(2.5 * safe));
+    let mut simulation = tumbling(yielding(), &Settings { allow_unstable: true, ..settings });
+    let before = simulation.checkpoint();
+    simulation.advance().expect_err("it bursts");
+    assert!(simulation.checkpoint() == before);
+}

@@ -23,7 +23,7 @@ CLAMPED = 2
 NEAR = 1.0
 """How near (degrees) to the line the tip must be for the overhang to be read."""
 MOST_STRIPS = 4
-STEP = 5e-4
+STEP = 2.5e-4
 """s; the solver's droop depends a little on its step."""
 DIRECTIONS = {"warp": (1.0, 0.0), "weft": (0.0, 1.0), "bias": (1.0, 1.0)}
 """Which way the warp runs in a strip that is cut along x in this direction of the fabric."""

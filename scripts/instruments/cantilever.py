@@ -3,6 +3,9 @@
 The overhang O then tells the bending length c = O/2 and the flexural rigidity B = weight c³, as 41.5° is where the heavy
 elastica has weight O³/B = 8. Pushing is a row of strips of different overhang, each clamped and brought to rest; the next
 one is as long as the last one says that it should be.
+
+On the bias a strip bends with Peirce's mean if it is free to twist, that is, much narrower than long. A specimen of 25 mm
+that hangs out by less is not: where warp and weft bend twice as unlike each other, it reads a few percent more.
 """
 
 from __future__ import annotations
@@ -23,8 +26,8 @@ CLAMPED = 2
 NEAR = 1.0
 """How near (degrees) to the line the tip must be for the overhang to be read."""
 MOST_STRIPS = 4
-STEP = 2.5e-4
-"""s; the solver's droop depends a little on its step."""
+STEP = 5e-4
+"""s; where the solver lets a strip rest depends a little on its step: with half of this, by half a percent of B at the most."""
 DIRECTIONS = {"warp": (1.0, 0.0), "weft": (0.0, 1.0), "bias": (1.0, 1.0)}
 """Which way the warp runs in a strip that is cut along x in this direction of the fabric."""
 
@@ -80,7 +83,7 @@ class Cantilever:
 
 
 def expected_rigidity(fabric: Fabric, direction: str) -> float:
-    """B (N·m) of a narrow strip: on the bias, Peirce's mean, since it is free to twist."""
+    """B (N·m) of a narrow strip: on the bias, Peirce's mean."""
     warp, weft = fabric.number("bend_warp"), fabric.number("bend_weft")
     if direction == "bias":
         return 4.0 / (warp**-0.5 + weft**-0.5) ** 2

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import measure
-from instruments import cantilever, cutting, drape, resting, shear, sheet, tensile
+from instruments import cantilever, cutting, drape, lineup, resting, shear, sheet, tensile
 from instruments.elastica import FLAT_TIP, gamma_of_chord, profile
 from instruments.fabric import Fabric
 from instruments.resting import Load, Restless, Specimen, settle
@@ -211,9 +211,51 @@ def test_a_sheet_tells_what_was_read_beside_the_preset(tmp_path, capsys):
     assert "60.0" in (tmp_path / "cotton_poplin" / "sheet.txt").read_text(encoding="utf-8")
 
 
+def test_a_table_tells_fabrics_beside_their_own_numbers_and_goes_on_where_it_was_stopped(
+    tmp_path, capsys, monkeypatch
+):
+    words = ["denim", "felt", "--instrument", "shear", "--cells", "8", "--out", str(tmp_path)]
+    assert measure.main(words) == 0
+    whole = capsys.readouterr().out
+    _, denim, felt = (
+        line for line in whole.splitlines()[3:] if line[:5] in ("-----", "denim", "felt ")
+    )
+    assert denim.split() == ["denim", "122", "(122)"]
+    assert felt.startswith("felt")
+    (tmp_path / "table" / "felt.json").unlink()
+    measured = []
+    monkeypatch.setattr(
+        sheet,
+        "measure",
+        lambda fabric, order: measured.append(fabric.preset) or sheet.Sheet(fabric, order),
+    )
+    assert measure.main([*words, "--resume"]) == 0
+    assert measured == ["felt"]
+    assert denim in capsys.readouterr().out
+    assert measure.main([*words, "--resume", "--set", "shear=60"]) == 0
+    assert measured == ["felt", "denim", "felt"]
+
+
+def test_a_table_says_whether_fabrics_drape_as_they_are_said_to():
+    found = {
+        "fabric": "silk", "tensile": {}, "shear": {}, "cantilever": {},
+        "drape": [{"coefficient_percent": c, "nodes": 5} for c in (30.0, 40.0)],
+    }  # fmt: skip
+    assert lineup.row({**found, "drape_band_percent": [20, 40]})[-3:] == (
+        "35.0 (20 to 40)",
+        "in",
+        "5",
+    )
+    assert lineup.row({**found, "drape_band_percent": [36, 40]})[-2] == "OUT"
+    assert lineup.row({**found, "drape_band_percent": None})[-3:] == ("35.0", "", "5")
+    assert len(lineup.row({**found, "drape_band_percent": None})) == len(lineup.HEADINGS)
+
+
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
+        (["denim", "--resume"], "--resume of denim alone; accepted: of all, or of several"),
+        (["denim", "velour"], "there is no fabric 'velour'; accepted: "),
         (["velour"], "there is no fabric 'velour'; accepted: cashmere_coating, "),
         (["denim", "--cells", "3"], "--cells 3: accepted: 8 to 400"),
         (["denim", "--specimens", "0"], "--specimens 0: accepted: 1 to 20"),

@@ -66,6 +66,8 @@ class Cantilever:
     """B (N·m)."""
     expected: float
     """B (N·m) of the fabric's own numbers."""
+    expected_bending_length: float
+    """c (m) of it."""
     strip: Overhang
     """The last one that hung there."""
     exact: Profile
@@ -146,4 +148,5 @@ def measure(
     overhang = (read_at * rigidity / fabric.weight) ** (1.0 / 3.0)
     rigidity = fabric.weight * (0.5 * overhang) ** 3
     exact = profile(fabric.weight * hanging.length**3 / expected)
-    return Cantilever(direction, overhang, rigidity, expected, hanging, exact)
+    bending_length = (expected / fabric.weight) ** (1.0 / 3.0)
+    return Cantilever(direction, overhang, rigidity, expected, bending_length, hanging, exact)

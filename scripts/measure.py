@@ -1,7 +1,9 @@
-"""Measure a fabric as a lab does: `measure.py PRESET`, or `measure.py all` for one line of each.
+"""Measure a fabric as a lab does: `measure.py PRESET`; several, or `all`, give a table with a line of each.
 
-Leaves the sheet, its pictures and its numbers in out/measure/PRESET. Run by the Python of .venv (`python3 scripts/dev.py build`
-makes it). Exit codes: 0 done, 2 wrong use, 3 a specimen did not come to rest.
+Leaves the sheet, its pictures and its numbers in out/measure/PRESET; a table, and the numbers of each fabric as soon as it is
+measured, in out/measure/table, from where `--resume` goes on. A fabric of a table takes 12 to 45 s, all of them about a
+quarter of an hour. Run by the Python of .venv (`python3 scripts/dev.py build` makes it). Exit codes: 0 done, 2 wrong use,
+3 a specimen did not come to rest.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ from pathlib import Path
 
 import boucle_core
 
-from instruments import plots, sheet
+from instruments import lineup, plots, sheet
 from instruments.fabric import Fabric
 from instruments.resting import Restless
 
@@ -30,27 +32,14 @@ KEYS = (
     "bend_hysteresis",
 )
 """Numbers that --set changes."""
-SUMMARY = (
-    "fabric",
-    "Y warp N/m",
-    "Y weft N/m",
-    "Y bias N/m",
-    "G N/m",
-    "B warp µN·m",
-    "B weft µN·m",
-    "c warp cm",
-    "c weft cm",
-    "DC %",
-    "nodes",
-    "said",
-    "",
-)
 
 
 def parser() -> argparse.ArgumentParser:
     """The command line of this script."""
     lines = argparse.ArgumentParser(prog="measure.py", description=__doc__, allow_abbrev=False)
-    lines.add_argument("preset", metavar="PRESET", help="a fabric of the module, or all")
+    lines.add_argument(
+        "presets", metavar="PRESET", nargs="+", help="a fabric of the module, or several, or all"
+    )
     lines.add_argument(
         "--instrument",
         action="append",
@@ -62,10 +51,13 @@ def parser() -> argparse.ArgumentParser:
         "--cells", type=int, metavar="N", help="cells along the longest side of every specimen"
     )
     lines.add_argument(
-        "--specimens", type=int, metavar="N", help="discs to drape (3; of all fabrics 1)"
+        "--specimens", type=int, metavar="N", help="discs to drape (3; for a table 1)"
     )
     lines.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="another number, SI units"
+    )
+    lines.add_argument(
+        "--resume", action="store_true", help="measure what a table that was stopped lacks"
     )
     lines.add_argument("--out", metavar="DIR", type=Path, default=ROOT / "out" / "measure")
     return lines
@@ -89,18 +81,25 @@ def changes(words: Sequence[str]) -> dict[str, float]:
     return found
 
 
+def is_table(presets: Sequence[str]) -> bool:
+    """Whether a line of each is wanted, not a sheet."""
+    return len(presets) > 1 or ALL in presets
+
+
 def ordered(options: argparse.Namespace) -> sheet.Order:
     """What the command line asks for.
 
     Raises:
-        ValueError: A count is out of range.
+        ValueError: A count is out of range, or there is no table to resume.
     """
-    default = 1 if options.preset == ALL else 3
+    default = 1 if is_table(options.presets) else 3
     specimens = default if options.specimens is None else options.specimens
     if options.cells is not None and not 8 <= options.cells <= 400:
         raise ValueError(f"--cells {options.cells}: accepted: 8 to 400")
     if not 1 <= specimens <= 20:
         raise ValueError(f"--specimens {specimens}: accepted: 1 to 20")
+    if options.resume and not is_table(options.presets):
+        raise ValueError(f"--resume of {options.presets[0]} alone; accepted: of all, or of several")
     instruments = options.instrument or sheet.INSTRUMENTS
     return sheet.Order(tuple(instruments), options.mesh, options.cells, specimens)
 
@@ -117,70 +116,54 @@ def report(fabric: Fabric, order: sheet.Order, folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "sheet.txt").write_text(text + "\n", encoding="utf-8")
     keep(folder / "numbers.json", sheet.numbers(read))
-    for path in plots.save(read, folder):
+    for path in (folder / "numbers.json", *plots.save(read, folder)):
         print(path)
 
 
-def summarize(order: sheet.Order, own: dict[str, float], out: Path) -> bool:
-    """Measure all fabrics, a line of the table for each; whether all came to rest."""
-    results, rows = {}, []
-    for preset in boucle_core.fabric_presets():
-        started = time.monotonic()
-        try:
-            read = sheet.measure(Fabric(preset, own), order)
-        except Restless as fault:
-            print(f"{preset}: {fault}", file=sys.stderr)
-            continue
-        results[preset] = sheet.numbers(read)
-        rows.append(summary(read))
-        print(" ".join(rows[-1]), f"({time.monotonic() - started:.0f} s)", flush=True)
-    print("\n" + sheet.table(SUMMARY, rows))
-    out.mkdir(parents=True, exist_ok=True)
-    keep(out / "all.json", results)
-    return len(results) == len(boucle_core.fabric_presets())
-
-
-def summary(read: sheet.Sheet) -> tuple[str, ...]:
-    """The key numbers of a fabric; empty where nothing was measured."""
-
-    def each(found: dict, ways: Sequence[str], number: str, scale: float = 1.0) -> list[str]:
-        return [
-            sheet.figure(scale * getattr(found[way], number), 3) if way in found else ""
-            for way in ways
-        ]
-
-    drapes = ["", "", "", ""]
-    if read.drapes:
-        band = read.fabric.band
-        said = "" if band is None else f"{band[0]:g} to {band[1]:g}"
-        verdict = {True: "in", False: "OUT", None: ""}[read.is_in_band]
-        nodes = sum(one.nodes for one in read.drapes) / len(read.drapes)
-        drapes = [f"{read.coefficient:.1f}", f"{nodes:.0f}", said, verdict]
-    return (
-        read.fabric.preset,
-        *each(read.tensile, sheet.DIRECTIONS, "stiffness"),
-        *each(read.shear, ("warp",), "stiffness"),
-        *each(read.cantilever, sheet.YARNS, "rigidity", 1e6),
-        *each(read.cantilever, sheet.YARNS, "bending_length", 100.0),
-        *drapes,
+def tabulate(fabrics: Sequence[Fabric], order: sheet.Order, folder: Path, resumes: bool) -> bool:
+    """Measure fabrics, a line of the table for each, and keep all in a folder; whether all came to rest."""
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = []
+    for fabric in fabrics:
+        kept, started = folder / f"{fabric.preset}.json", time.monotonic()
+        numbers = json.loads(kept.read_text("utf-8")) if resumes and kept.is_file() else {}
+        if not lineup.is_of(numbers, order, fabric.changes):
+            try:
+                numbers = sheet.numbers(sheet.measure(fabric, order))
+            except Restless as fault:
+                print(f"measure.py: {fault}", file=sys.stderr)
+                continue
+            keep(kept, numbers)
+        rows.append(lineup.row(numbers))
+        print(
+            f"{'  '.join(filter(None, rows[-1]))}  {time.monotonic() - started:.0f} s", flush=True
+        )
+    text = sheet.table(lineup.HEADINGS, rows)
+    print(
+        f"\n{text}\n\nIn brackets: the fabric's own numbers; of DC, between what it is said to lie."
     )
+    (folder / "table.txt").write_text(text + "\n", encoding="utf-8")
+    return len(rows) == len(fabrics)
 
 
 def keep(path: Path, content: object) -> None:
-    """Write numbers as strict JSON."""
+    """Write numbers as strict JSON, whole or not at all."""
     text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8")
-    print(path)
+    part = path.with_suffix(".part")
+    part.write_text(text + "\n", encoding="utf-8")
+    part.replace(path)
 
 
 def main(words: Sequence[str] | None = None) -> int:
     """Measure what the command line asks for."""
     options = parser().parse_args(words)
+    presets = boucle_core.fabric_presets() if ALL in options.presets else options.presets
     try:
         own, order = changes(options.set), ordered(options)
-        if options.preset != ALL:
-            report(Fabric(options.preset, own), order, options.out / options.preset)
-        elif not summarize(order, own, options.out):
+        fabrics = [Fabric(preset, own) for preset in presets]
+        if not is_table(options.presets):
+            report(fabrics[0], order, options.out / fabrics[0].preset)
+        elif not tabulate(fabrics, order, options.out / "table", options.resume):
             return 3
     except (ValueError, OSError) as fault:
         print(f"measure.py: {fault}", file=sys.stderr)

@@ -7,12 +7,10 @@ from __future__ import annotations
 
 import argparse
 import math
-import os
-import sys
-import tempfile
 from pathlib import Path
 from typing import Any
 
+from embedded import make_picture
 from environment import OUT, SCRIPTS
 
 SIDE = 0.075
@@ -77,11 +75,8 @@ def light(bpy: Any, rows: int) -> None:
     scene.camera = camera
 
 
-def render(folder: Path, pixels: int, samples: int) -> Path:
+def render(bpy: Any, options: argparse.Namespace) -> Path:
     """Write the picture."""
-    import embedded
-
-    bpy = embedded.start(folder)
     import demo_look
 
     items = bpy.ops.boucle.add_material.get_rna_type().properties["fabric"].enum_items
@@ -89,7 +84,7 @@ def render(folder: Path, pixels: int, samples: int) -> Path:
     rows = math.ceil(len(keys) / COLUMNS)
     lay_out(bpy, keys)
     light(bpy, rows)
-    demo_look.prepare_render(pixels * COLUMNS, pixels * rows, samples)
+    demo_look.prepare_render(options.pixels * COLUMNS, options.pixels * rows, options.samples)
     picture = OUT / "swatches.png"
     bpy.context.scene.render.filepath = str(picture)
     bpy.ops.render.render(write_still=True)
@@ -97,30 +92,13 @@ def render(folder: Path, pixels: int, samples: int) -> Path:
     return picture
 
 
-def keep(picture: Path, small: Path) -> None:
-    """Keep a picture as a small file beside the README."""
-    from PIL import Image
-
-    with Image.open(picture) as image:
-        image.convert("RGB").save(small, quality=82, optimize=True)
-
-
-def main() -> int:
+def main() -> None:
     """Render, and shrink for the README if asked."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--readme", action="store_true", help=f"also write {README.name}")
     parser.add_argument("--pixels", type=int, default=PIXELS, help="of a swatch")
     parser.add_argument("--samples", type=int, default=SAMPLES, help="a pixel")
-    chosen = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        picture = render(Path(folder) / "blender", chosen.pixels, chosen.samples)
-    if chosen.readme:
-        keep(picture, README)
-    return 0
+    make_picture(parser, render, README)
 
 
 if __name__ == "__main__":
-    code = main()
-    # Some renders hang when Blender ends; everything is written by now.
-    sys.stdout.flush()
-    os._exit(code)
+    main()

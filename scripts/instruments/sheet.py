@@ -34,6 +34,15 @@ class Order:
     specimens: int = 3
     """Discs to drape."""
 
+    def words(self) -> dict[str, Any]:
+        """As it is kept beside what was measured."""
+        return {
+            "instruments": list(self.instruments),
+            "mesh": self.kind,
+            "cells": self.cells,
+            "specimens": self.specimens,
+        }
+
 
 @dataclass
 class Sheet:
@@ -206,7 +215,7 @@ def cantilever_rows(sheet: Sheet) -> list[tuple[str, ...]]:
     if not read:
         return []
     expected = [one.expected for one in read.values()]
-    lengths = [100.0 * (own / sheet.fabric.weight) ** (1.0 / 3.0) for own in expected]
+    lengths = [100.0 * one.expected_bending_length for one in read.values()]
     return [
         line(
             "bending length",
@@ -266,12 +275,10 @@ def table(headings: Sequence[str], cells: Sequence[Sequence[str]]) -> str:
 
 def numbers(sheet: Sheet) -> dict[str, Any]:
     """All numbers of a sheet, in SI units but for percents."""
-    order = sheet.order
     return {
         "fabric": sheet.fabric.preset,
         "changes": dict(sheet.fabric.changes),
-        "mesh": order.kind,
-        "cells": order.cells,
+        "order": sheet.order.words(),
         "tensile": {
             way: {
                 "stiffness": one.stiffness,
@@ -306,6 +313,7 @@ def numbers(sheet: Sheet) -> dict[str, Any]:
             way: {
                 "overhang": one.overhang,
                 "bending_length": one.bending_length,
+                "expected_bending_length": one.expected_bending_length,
                 "rigidity": one.rigidity,
                 "expected": one.expected,
                 "droop": one.strip.droop,

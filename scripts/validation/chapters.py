@@ -12,6 +12,7 @@ CHAPTERS = {
     "lattice": "Spring lattices: largest stable step and elastic moduli",
     "statics": "Chains, strips and catenaries at rest",
     "bending": "Fabric that bends",
+    "waves": "Standing waves of fabric",
     "dynamics": "Cloth in motion",
     "laws": "What every law keeps",
     "friction_contact": "Friction and contact",

@@ -65,6 +65,24 @@ def test_a_strip_of_fabric_hangs_as_the_continuum():
     hold("bending", "hanging strip of fabric*")
 
 
+@pytest.mark.parametrize("kind", ["stretch", "shear", "bend"])
+def test_a_wave_of_fabric_swings_as_its_closed_form_says(kind):
+    hold("waves", f"standing wave of {kind}: frequency on two meshes")
+
+
+@pytest.mark.parametrize("kind", ["stretch", "shear", "bend"])
+def test_a_damping_ratio_is_that_of_a_wave_of_a_tenth_of_a_metre(kind):
+    hold("waves", f"standing wave of {kind}: damping ratio*")
+
+
+def test_a_damping_ratio_holds_at_the_mean_of_warp_and_weft():
+    hold("waves", "standing wave of * along stiffer and softer yarns")
+
+
+def test_steps_damp_waves_by_far_less_than_the_damping_that_is_measured():
+    hold("waves", "standing waves without damping: what steps damp")
+
+
 def test_a_free_sheet_of_fabric_keeps_its_angular_momentum_under_verlet():
     hold("laws", "angular momentum of a free sheet")
 

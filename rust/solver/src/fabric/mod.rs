@@ -272,6 +272,11 @@ impl Fabrics {
         rows.iter().fold([0.0; 2], |most, row| [most[0].max(row[0]), most[1].max(row[1])])
     }
 
+    /// The number of the edge between two particles, the smaller first.
+    pub(crate) fn edge_between(&self, ends: [u32; 2]) -> Option<u32> {
+        self.couplings.edges.binary_search(&ends).ok().map(|edge| edge as u32)
+    }
+
     /// What each pair of particles weighs in the constant matrix, sorted by pair: stiffness (N/m) and damping (N·s/m).
     pub(crate) fn weights(&self) -> Vec<([u32; 2], [f64; 2])> {
         self.couplings.weights(&self.triangles, &self.laws)

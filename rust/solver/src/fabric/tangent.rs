@@ -94,20 +94,25 @@ impl Tangent {
         tasks.into_par_iter().for_each(|(packs, out)| {
             arch.dispatch(Freeze { fabrics, packs, positions, h, out });
         });
-        let (sides, couplings) = (&self.sides, &fabrics.couplings);
+        let Self { sides, edges, wings, .. } = self;
+        let couplings = &fabrics.couplings;
         let bend = |[stiffness, damping]: [f64; 2]| (stiffness + damping / h) as f32;
-        self.edges.fill::<EdgeLink<true>>(|edge| {
-            let mut sum = [0.0; EDGE];
-            for &side in couplings.sides.of(edge) {
-                for (sum, part) in sum.iter_mut().zip(&sides[side as usize]) {
-                    *sum += part;
-                }
-            }
-            sum[SIDE] = bend(couplings.bends[edge]);
-            sum
+        edges.fill::<EdgeLink<true>>(|edge| {
+            let mut numbers = [0.0; EDGE];
+            numbers[..SIDE].copy_from_slice(&sum(sides, couplings.sides.of(edge)));
+            numbers[SIDE] = bend(couplings.bends[edge]);
+            numbers
         });
-        let edges = couplings.edges.len();
-        self.wings.fill::<WingLink>(|wings| [bend(couplings.bends[edges + wings])]);
+        let edge_count = couplings.edges.len();
+        wings.fill::<WingLink>(|wings| [bend(couplings.bends[edge_count + wings])]);
+    }
+
+    /// What the triangles beside an edge add to the Hessian, by its number: the block by which its smaller end resists moves
+    /// relative to its larger, row by row.
+    pub(crate) fn block(&self, fabrics: &Fabrics, edge: usize) -> [f32; 9] {
+        let [xx, yx, yy, zx, zy, zz, tx, ty, tz] =
+            sum(&self.sides, fabrics.couplings.sides.of(edge));
+        [xx, yx - tz, zx + ty, yx + tz, yy, zy - tx, zx - ty, zy + tx, zz]
     }
 
     /// Adds the blocks on the diagonal of a chunk's particles, of hinges as if each were alone.
@@ -116,6 +121,18 @@ impl Tangent {
         self.edges.add_blocks::<EdgeLink<true>>(first, blocks);
         self.wings.add_blocks::<WingLink>(first, blocks);
     }
+}
+
+/// What the triangles beside an edge add up to.
+#[inline(always)]
+fn sum(sides: &[[f32; SIDE]], own: &[u32]) -> [f32; SIDE] {
+    let mut sum = [0.0; SIDE];
+    for &side in own {
+        for (sum, part) in sum.iter_mut().zip(&sides[side as usize]) {
+            *sum += part;
+        }
+    }
+    sum
 }
 
 /// The parts of some triangles' tangents along their sides.

@@ -16,16 +16,19 @@
 //! from the inertial prediction `x = target + h'² g`, by conjugate gradients. Their preconditioner is the inverse of
 //! `P = M/h'² + D/h' + sum k_e L_e`, the matrix of Projective Dynamics, between two smoothings ([`smoothed`]). P is
 //! constant while step, stiffness and pins are, and one number for each pair of particles; bend springs are left out.
+//! For fabric, H itself is factored in its place ([`factored`]).
 //!
 //! Iterations end when one brings the guess nearer by a small part only of what all have, in the norm of H. Mostly two
 //! of Newton are made; BDF2 needs the second where cloth snaps taut. What is woven is solved further ([`solving`]).
 //!
 //! Source: Baraff & Witkin 1998 for the step; Bouaziz et al. 2014 for P.
 
+mod factored;
 mod hessian;
 mod history;
 mod inflated;
 mod momentum;
+mod newton;
 mod preconditioner;
 mod pull;
 mod smoothed;
@@ -39,19 +42,18 @@ mod tests;
 use crate::cloth::{Cloth, placed};
 use crate::contact::Contacts;
 use crate::fabric::Fabrics;
-use crate::force::AirScratch;
 use crate::interrupter::Interrupter;
-use crate::linear::{BlockJacobi, ConjugateGradient, Solved, Stop};
+use crate::linear::{BlockJacobi, ConjugateGradient};
 use crate::settings::LinearSolver;
 use crate::state::{Coordinates, State};
-use crate::system::{Motion, Observed, Rate, System};
+use crate::system::{Observed, System};
+use factored::Factored;
 use hessian::Hessian;
 use history::Formula;
 pub(crate) use history::Memory;
-use inflated::Inflated;
 use momentum::Pieces;
 use preconditioner::Preconditioner;
-use smoothed::{Scratch, Smoothed};
+use smoothed::Scratch;
 use solving::Solving;
 pub(crate) use substeps::Accuracy;
 use taut::Taut;
@@ -79,6 +81,8 @@ pub(crate) struct Implicit {
     /// What the next step depends on besides the state.
     pub(crate) memory: Memory,
     preconditioner: Preconditioner,
+    /// In the place of P.
+    factored: Option<Factored>,
     blocks: BlockJacobi,
     scratch: Scratch,
     hessian: Hessian,
@@ -87,6 +91,9 @@ pub(crate) struct Implicit {
     pieces: Pieces,
     gradients: ConjugateGradient,
     solving: Solving,
+    linear_solver: LinearSolver,
+    /// h' of the last step (s); 0 before the first.
+    step: f64,
     /// Base position, and the target in the place of velocities.
     base: State,
     /// The present guess.
@@ -116,10 +123,14 @@ impl Implicit {
         let springs = placed(cloths)
             .flat_map(|(cloth, base)| cloth.springs.iter().map(move |spring| (spring, base)));
         let taut = Taut::new(cloths, &system.layout);
+        let solving = Solving::of(cloths, linear_solver);
+        let preconditioner = Preconditioner::new(cloths, &system.fabrics, linear_solver);
+        let factored = solving.is_factored.then(|| Factored::new(&preconditioner, system));
         Self {
             rule,
             memory: Memory::new(state, taut.edge_count()),
-            preconditioner: Preconditioner::new(cloths, &system.fabrics, linear_solver),
+            preconditioner,
+            factored,
             blocks: BlockJacobi::new(count),
             scratch: Scratch::new(count),
             hessian: Hessian::new(system, count),
@@ -127,7 +138,9 @@ impl Implicit {
             taut,
             pieces: Pieces::new(count, springs),
             gradients: ConjugateGradient::new(count, interrupter),
-            solving: Solving::of(cloths),
+            solving,
+            linear_solver,
+            step: 0.0,
             base: State::zeros(count),
             at: State::zeros(count),
             residual: State::zeros(count),
@@ -158,7 +171,7 @@ impl Implicit {
     /// Takes the present stiffness of the cloths' springs.
     pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth], fabrics: &Fabrics) {
         self.preconditioner.follow_stiffness(cloths, fabrics);
-        self.solving = Solving::of(cloths);
+        self.solving = Solving::of(cloths, self.linear_solver);
     }
 
     /// Moves `state` by one step of h seconds, among contacts that were told of the step.
@@ -170,6 +183,7 @@ impl Implicit {
         h: f64,
     ) {
         let formula = self.formula(h);
+        self.step = formula.step;
         let iterations = self.iterations;
         self.predict(system, state, formula, h);
         if contacts.is_empty() {
@@ -286,98 +300,4 @@ impl Implicit {
             }
         }
     }
-
-    /// Takes the residual and the tangents at the present guess.
-    fn linearize(&mut self, system: &System, contacts: &mut Contacts, h: f64, whole: f64) {
-        let Self {
-            base,
-            at,
-            residual,
-            still,
-            observed,
-            hessian,
-            blocks,
-            taut,
-            gradients,
-            memory,
-            ..
-        } = self;
-        let by_square = 1.0 / (h * h);
-        let System { masses, inverse_masses, .. } = system;
-        let from_rest = Motion { from: still, kick: 1.0, drift: 0.0, rate: Rate::New, stage: 1.0 };
-        system.advance(at, residual, observed, from_rest);
-        for axis in 0..3 {
-            let accelerations = residual.velocity.0[axis].iter();
-            let out = residual.position.0[axis].iter_mut().zip(accelerations);
-            let x = at.position.0[axis].iter().zip(&*base.velocity.0[axis]);
-            for (i, ((out, a), (x, target))) in out.zip(x).enumerate() {
-                let mass = if inverse_masses[i] > 0.0 { masses[i] } else { 0.0 };
-                *out = mass * (a - (x - target) * by_square);
-            }
-        }
-        taut.freeze(&at.position, &memory.tensions, 1.0, system);
-        taut.add_forces(&mut residual.position);
-        contacts.push(&at.position, &mut residual.position, whole);
-        gradients.take_residual(&residual.position);
-        for (i, inertia) in hessian.inertia.iter_mut().enumerate() {
-            *inertia = self::inertia(system, &observed.air, i, h) as f32;
-        }
-        for (particle, tangent) in system.goals.tangents(h) {
-            if !system.is_pinned(particle) {
-                hessian.inertia[particle] += tangent as f32;
-            }
-        }
-        hessian.freeze(system, observed, &at.position, h);
-        hessian.tauten(taut.pulling());
-        hessian.invert_blocks(system, &contacts.matrix, blocks);
-        contacts.matrix.weigh(&hessian.inertia);
-    }
-
-    /// Solves for the move from the present guess.
-    fn solve(&mut self, system: &System, contacts: &Contacts, h: f64, stop: Stop) -> Solved {
-        let Self { preconditioner, hessian, blocks, scratch, gradients, observed, .. } = self;
-        let matrix = &hessian.without_bends(system, &contacts.matrix);
-        let inverse = preconditioner.inverse(system, h);
-        let operator = hessian.on(system, &contacts.matrix);
-        let contacts = &contacts.matrix;
-        let largest = hessian.largest();
-        let smoothed = &mut Smoothed { matrix, contacts, blocks, inverse, largest, scratch };
-        if system.air.pressures.is_empty() {
-            return gradients.solve(&operator, smoothed, stop);
-        }
-        gradients.solve(&Inflated::new(operator, system, &observed.air), smoothed, stop)
-    }
-
-    /// Moves the guess by the solution.
-    fn correct(&mut self, system: &System, contacts: &Contacts, h: f64) {
-        let solution = &self.gradients.solution;
-        self.taut.follow(solution, &mut self.memory.tensions);
-        let inertia = |particle: usize| inertia(system, &self.observed.air, particle, h);
-        let residual = &self.residual.position;
-        let shifts = self.pieces.shifts(residual, solution, inertia, &contacts.matrix);
-        for axis in 0..3 {
-            let position = self.at.position.0[axis].iter_mut();
-            let velocity = self.at.velocity.0[axis].iter_mut();
-            let base = self.base.position.0[axis].iter();
-            let moves = solution.0[axis].iter().zip(base).enumerate();
-            for ((x, v), (particle, (dx, base))) in position.zip(velocity).zip(moves) {
-                let shift = shifts.as_ref().map_or(0.0, |shifts| shifts.of(particle)[axis]);
-                let dx = f64::from(*dx) + shift;
-                if dx != 0.0 {
-                    *x += dx;
-                    *v = (*x - base) / h;
-                }
-            }
-        }
-    }
-}
-
-/// `m/h² + ka/h + k` (kg/s²) of a particle, wind and fields included; 0 of a pinned one.
-fn inertia(system: &System, air: &AirScratch, particle: usize, h: f64) -> f64 {
-    if system.is_pinned(particle) {
-        return 0.0;
-    }
-    let damping = system.air_damping[particle] + system.air.damping_of(particle, air);
-    let stiffness = air.stiffness_of(particle);
-    system.masses[particle] / (h * h) + damping / h + stiffness
 }

@@ -31,12 +31,12 @@ impl Kind {
 /// P on the springs along edges and across faces. Bend springs are left to H: the factor is half as large without.
 #[derive(Debug)]
 pub(super) struct Preconditioner {
-    graph: Graph,
-    pairs: Vec<[u32; 2]>,
+    pub(super) graph: Graph,
+    pub(super) pairs: Vec<[u32; 2]>,
     /// Stiffness (N/m) and damping (N·s/m) of each pair.
     springs: Vec<[f64; 2]>,
     /// Rest positions (m), to order by.
-    positions: Vec<Vector>,
+    pub(super) positions: Vec<Vector>,
     /// What is ready, and for which step (s); 0 for none.
     inverse: Option<Kind>,
     choice: LinearSolver,
@@ -95,8 +95,15 @@ impl Preconditioner {
         inverse.insert(kind).as_inverse()
     }
 
-    /// The inverse of the last step, if there was one, and the matrix itself.
-    pub(super) fn both(&mut self) -> Option<(&mut dyn Inverse, Forward<'_>)> {
+    /// The inverse for steps of h' seconds and the matrix itself; none before there was a step.
+    pub(super) fn both(
+        &mut self,
+        system: &System,
+        h: f64,
+    ) -> Option<(&mut dyn Inverse, Forward<'_>)> {
+        if h > 0.0 {
+            self.inverse(system, h);
+        }
         let Self { inverse, graph, matrix, .. } = self;
         Some((inverse.as_mut()?.as_inverse(), Forward { graph, matrix }))
     }

@@ -46,7 +46,8 @@ impl Scratch {
 pub(super) struct Smoothed<'a> {
     /// Without bend springs.
     pub(super) matrix: &'a Product<'a>,
-    pub(super) contacts: &'a ContactMatrix,
+    /// Those that the inverse in the middle does not know.
+    pub(super) contacts: Option<&'a ContactMatrix>,
     pub(super) blocks: &'a BlockJacobi,
     pub(super) inverse: &'a mut dyn Inverse,
     /// Bound of the eigenvalues of the matrix times the inverse of its blocks.
@@ -65,10 +66,12 @@ impl Inverse for Smoothed<'_> {
             blocks.relax(factors, left, step, z);
             matrix.subtract(step, left);
         }
-        let heavy = contacts.lighten(left);
+        let heavy = contacts.map(|contacts| contacts.lighten(left));
         inverse.apply_inverse(left, step);
-        contacts.lighten_transposed(step);
-        contacts.put_back(&heavy, left);
+        if let (Some(contacts), Some(heavy)) = (contacts, heavy) {
+            contacts.lighten_transposed(step);
+            contacts.put_back(&heavy, left);
+        }
         z.update(step, |z, step| *z += step);
         for factors in smooth() {
             matrix.subtract(step, left);

@@ -4,7 +4,9 @@
 
 use boucle_geometry::{Mesh, Vector};
 
+use super::factored::Factored;
 use super::preconditioner::Preconditioner;
+use super::smoothed::Smoothed;
 use super::*;
 use crate::cloth::Mass;
 use crate::linear::{Field, Inverse, LARGEST, Operator};
@@ -125,8 +127,14 @@ impl Making {
         let matrix = &hessian.without_bends(system, &contacts.matrix);
         let inverse = preconditioner.inverse(system, H);
         let contacts = &contacts.matrix;
-        let mut smoothed =
-            Smoothed { matrix, contacts, blocks, inverse, largest: hessian.largest(), scratch };
+        let mut smoothed = Smoothed {
+            matrix,
+            contacts: Some(contacts),
+            blocks,
+            inverse,
+            largest: hessian.largest(),
+            scratch,
+        };
         let mut z = Field::zeros(direction.len());
         smoothed.apply_inverse(&field(direction), &mut z);
         vectors_of(&z)
@@ -391,7 +399,7 @@ fn the_preconditioner_is_never_below_the_matrix_of_hookean_springs() {
             let mut preconditioner =
                 Preconditioner::new(&making.cloths, &making.system.fabrics, LinearSolver::Ldlt);
             preconditioner.inverse(&making.system, H);
-            let matrix = preconditioner.both().expect("an inverse").1;
+            let matrix = preconditioner.both(&making.system, H).expect("an inverse").1;
             for direction in making.directions() {
                 let bends = cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Bend);
                 let bend: f64 = bends
@@ -443,13 +451,17 @@ fn the_smoothed_preconditioner_is_symmetric_and_positive_in_any_state() {
 
 /// A sheet of fabric; its faces' angles at rest are what the seed makes of them.
 fn of_fabric(positions: &[Vector], damping_ratio: f64) -> Cloth {
+    of_bending_fabric(positions, damping_ratio, [2e-3, 1e-3])
+}
+
+fn of_bending_fabric(positions: &[Vector], damping_ratio: f64, bend: [f64; 2]) -> Cloth {
     let cloth =
         sheet(true, &SpringMaterial { limiter: Limiter::None, ..SpringMaterial::default() });
     let fabric = crate::Fabric {
         stretch: [900.0, 500.0],
         compression: [200.0, 100.0],
         shear: 60.0,
-        bend: [2e-3, 1e-3],
+        bend,
         damping_ratio: [damping_ratio; 3],
         warp: crate::Warp::Along(Vector::new(0.4, 1.0, 0.0)),
         ..crate::Fabric::default()
@@ -503,6 +515,36 @@ fn matrix_and_preconditioner_of_crumpled_fabric_are_symmetric_and_positive() {
                 assert!(dot(a, &one) > 0.0 && dot(b, &other) > 0.0, "shake {shake}");
                 let error = (dot(b, &one) - dot(a, &other)).abs() / scale;
                 assert!(error < tolerance, "shake {shake}: {error:e}");
+            }
+        }
+    }
+}
+
+/// What the factored matrix makes of `H x` is x, for springs in any order and for fabric, in any state.
+#[test]
+fn the_factored_inverse_is_that_of_the_matrix_without_what_bends() {
+    let [material, ..] = &materials(Limiter::Project)[..] else { panic!("no material") };
+    let flat = sheet(true, material).positions;
+    for (factor, shake) in STATES {
+        for cloth in
+            [sheet(true, material), sheet(false, material), of_bending_fabric(&flat, 0.1, [0.0; 2])]
+        {
+            let positions = drawn(&cloth, factor, shake, 5);
+            let mut making = Making::new(cloth, &positions, &noise(9, positions.len()));
+            making.residual(&positions);
+            let mut factored = Factored::new(&making.implicit.preconditioner, &making.system);
+            let hessian = &making.implicit.hessian;
+            let contacts = &making.contacts.matrix;
+            let inverse = factored.inverse(hessian, &making.system, contacts);
+            for direction in making.directions() {
+                let direction = making.freed(direction);
+                let hx = apply(&hessian.without_bends(&making.system, contacts), &direction);
+                let mut z = Field::zeros(hx.len());
+                inverse.apply_inverse(&field(&hx), &mut z);
+                let error: Vectors =
+                    vectors_of(&z).iter().zip(&direction).map(|(a, b)| a - b).collect();
+                let error = norm(&error) / norm(&direction);
+                assert!(error < SMOOTHED, "{factor}, {shake}: {error:e}");
             }
         }
     }

@@ -63,6 +63,12 @@ impl Graph {
     pub(crate) fn neighbors(&self, particle: u32) -> &[u32] {
         &self.neighbors[self.entries(particle)]
     }
+
+    /// Neighbors and the numbers of the pairs with them.
+    pub(crate) fn edges(&self, particle: u32) -> impl Iterator<Item = (u32, u32)> {
+        let entries = self.entries(particle);
+        self.neighbors[entries.clone()].iter().copied().zip(self.pairs[entries].iter().copied())
+    }
 }
 
 /// The numbers of the matrix on a graph.
@@ -115,10 +121,7 @@ impl Laplacian {
         graph: &'a Graph,
         particle: u32,
     ) -> impl Iterator<Item = (u32, f64)> + 'a {
-        let entries = graph.entries(particle);
-        let pairs = &graph.pairs[entries.clone()];
-        let weights = pairs.iter().map(|&pair| self.weights[pair as usize]);
-        graph.neighbors[entries].iter().copied().zip(weights)
+        graph.edges(particle).map(|(neighbor, pair)| (neighbor, self.weights[pair as usize]))
     }
 }
 

@@ -2,9 +2,11 @@
 
 mod block_jacobi;
 pub(crate) mod chebyshev;
+mod cholesky;
 mod conjugate_gradient;
 mod dissection;
 mod field;
+mod fronts;
 mod laplacian;
 mod ldlt;
 mod links;
@@ -16,6 +18,7 @@ mod pairs;
 mod problems;
 
 pub(crate) use block_jacobi::{BlockJacobi, Entries, LARGEST};
+pub(crate) use cholesky::{BlockMatrix, Cholesky};
 pub(crate) use conjugate_gradient::{ConjugateGradient, Inverse, Operator, Solved, Stop};
 pub(crate) use field::Field;
 pub(crate) use laplacian::{Forward, Graph, Laplacian};

@@ -2,6 +2,7 @@
 
 use boucle_geometry::Vector;
 
+use super::field::Field;
 use super::laplacian::Laplacian;
 use crate::scatter::scattered;
 
@@ -29,4 +30,11 @@ pub(super) fn grid(columns: u32, rows: u32) -> (Vec<Vector>, Vec<[u32; 2]>) {
 pub(super) fn matrix(pairs: &[[u32; 2]], count: usize, pins: &[usize]) -> Laplacian {
     let weights = (0..pairs.len() as u64).map(|i| 1.0 + 0.5 * scattered(i)).collect();
     Laplacian::new(pairs, weights, vec![1e-3; count], |particle| pins.contains(&particle))
+}
+
+/// Uneven vectors.
+pub(super) fn noise(count: usize) -> Field {
+    Field(std::array::from_fn(|axis| {
+        (0..count as u64).map(|i| scattered(3 * i + axis as u64) as f32).collect()
+    }))
 }

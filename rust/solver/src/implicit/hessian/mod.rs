@@ -21,6 +21,7 @@
 //! Source: Choi & Ko 2002 for the clamp.
 
 mod blocks;
+mod matrix;
 mod product;
 mod tangent;
 
@@ -36,6 +37,7 @@ use crate::kernel::{CHUNK, GATHERED, Layout, Place};
 use crate::linear::LARGEST;
 use crate::state::Coordinates;
 use crate::system::{Observed, System};
+pub(super) use matrix::Pattern;
 pub(super) use product::Product;
 use tangent::{Freeze, freeze_slot};
 

@@ -2,9 +2,10 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
+use super::super::fronts::Front;
 use super::super::laplacian::{Graph, Laplacian};
 use super::panel::{Lanes, Packed, store_below, store_inverse};
-use super::symbolic::{Front, Symbolic};
+use super::symbolic::Symbolic;
 
 /// `[S⁻¹; W]` of every front.
 #[derive(Clone, Debug, Default)]
@@ -15,11 +16,12 @@ pub(super) struct Factor {
 
 impl Factor {
     pub(super) fn new(symbolic: &Symbolic, graph: &Graph, matrix: &Laplacian, arch: Arch) -> Self {
-        let mut inverse = vec![Lanes::default(); symbolic.inverse_len];
-        let mut below = vec![Lanes::default(); symbolic.below_len];
-        if !symbolic.fronts.is_empty() {
+        let [inverse_len, below_len] = symbolic.lens();
+        let mut inverse = vec![Lanes::default(); inverse_len];
+        let mut below = vec![Lanes::default(); below_len];
+        if let Some(root) = symbolic.stored.len().checked_sub(1) {
             let eliminator = Eliminator { symbolic, graph, matrix, arch };
-            eliminator.eliminate(symbolic.fronts.len() - 1, (&mut inverse, &mut below));
+            eliminator.eliminate(root, (&mut inverse, &mut below));
         }
         Self { inverse, below }
     }
@@ -59,14 +61,15 @@ struct Eliminator<'a> {
 impl Eliminator<'_> {
     /// Eliminates a subtree into its part of the numbers and returns what remains for the rows below its root.
     fn eliminate(&self, root: usize, (inverse, below): Part) -> Square {
-        let front = &self.symbolic.fronts[root];
+        let Symbolic { fronts, stored } = self.symbolic;
+        let front = &fronts.all[root];
         let mut square = Square::zeros(front.count());
-        let (inverses, inverse) = inverse.split_at_mut(inverse.len() - front.inverse.len());
-        let (belows, below) = below.split_at_mut(below.len() - front.below.len());
+        let (inverses, inverse) = inverse.split_at_mut(inverse.len() - stored[root].inverse.len());
+        let (belows, below) = below.split_at_mut(below.len() - stored[root].below.len());
         if let Some([lower, upper]) = front.block.children {
             let [lower, upper] = [lower as usize, upper as usize];
-            let end = &self.symbolic.fronts[lower];
-            let start = &self.symbolic.fronts[front.block.first_block as usize];
+            let end = &stored[lower];
+            let start = &stored[front.block.first_block as usize];
             let (lower_inverses, upper_inverses) =
                 inverses.split_at_mut(end.inverse.end - start.inverse.start);
             let (lower_belows, upper_belows) =
@@ -83,7 +86,7 @@ impl Eliminator<'_> {
                 [lower, upper]
             };
             for (child, remainder) in [lower, upper].into_iter().zip(&remainders) {
-                extend_add(&mut square, &self.symbolic.fronts[child], remainder);
+                extend_add(&mut square, &fronts.all[child], remainder);
             }
         }
         self.assemble(front, &mut square);
@@ -98,22 +101,13 @@ impl Eliminator<'_> {
 
     /// Adds the matrix's own entries.
     fn assemble(&self, front: &Front, square: &mut Square) {
-        let own = &front.block.own;
-        for (column, &particle) in
-            self.symbolic.order[own.start as usize..own.end as usize].iter().enumerate()
-        {
+        let fronts = &self.symbolic.fronts;
+        for (column, &particle) in fronts.order[front.own_places()].iter().enumerate() {
             square.add(column, column, self.matrix.diagonal[particle as usize]);
             for (neighbor, weight) in self.matrix.row(self.graph, particle) {
-                let place = self.symbolic.places[neighbor as usize];
-                if place < own.start + column as u32 {
-                    continue;
+                if let Some(row) = fronts.row_of(front, neighbor).filter(|row| *row >= column) {
+                    square.add(row, column, -weight);
                 }
-                let row = if place < own.end {
-                    (place - own.start) as usize
-                } else {
-                    own.len() + front.rows.partition_point(|&row| row < place)
-                };
-                square.add(row, column, -weight);
             }
         }
     }

@@ -6,8 +6,9 @@
 
 use std::ops::Range;
 
+use super::super::fronts::Front;
 use super::panel::{ROWS, panel_count};
-use super::symbolic::{Front, Symbolic};
+use super::symbolic::{Stored, Symbolic};
 
 /// A subtree in which a solve reads fewer vectors is one task.
 const TASK: usize = 5_000;
@@ -55,14 +56,14 @@ pub(super) struct Plan {
 
 impl Plan {
     pub(super) fn new(symbolic: &Symbolic) -> Self {
-        let mut plan = Self { value_of: vec![0; symbolic.order.len()], ..Self::default() };
-        let mut work: Vec<usize> = Vec::with_capacity(symbolic.fronts.len());
-        for front in &symbolic.fronts {
+        let mut plan = Self { value_of: vec![0; symbolic.fronts.order.len()], ..Self::default() };
+        let mut work: Vec<usize> = Vec::with_capacity(symbolic.stored.len());
+        for (front, stored) in symbolic.fronts.all.iter().zip(&symbolic.stored) {
             let children = front.block.children.into_iter().flatten();
             let below: usize = children.map(|child| work[child as usize]).sum();
-            work.push(front.work() + below);
+            work.push(stored.work() + below);
         }
-        if let Some(root) = symbolic.fronts.len().checked_sub(1) {
+        if let Some(root) = symbolic.stored.len().checked_sub(1) {
             plan.add_subtree(symbolic, &work, root);
         }
         plan
@@ -70,7 +71,7 @@ impl Plan {
 
     /// Returns the number of the last task of a subtree.
     fn add_subtree(&mut self, symbolic: &Symbolic, work: &[usize], root: usize) -> usize {
-        let front = &symbolic.fronts[root];
+        let front = &symbolic.fronts.all[root];
         let first_value = self.value_count;
         let (children, fronts, places) = match front.block.children {
             Some(children) if work[root] >= TASK => {
@@ -84,15 +85,17 @@ impl Plan {
         self.value_count = values.end;
         for place in places.clone() {
             let value = values.start + place - places.start;
-            self.value_of[symbolic.order[place] as usize] = value as u32;
+            self.value_of[symbolic.fronts.order[place] as usize] = value as u32;
         }
         let first_step = self.steps.len();
         let mut panels = [0; 2];
-        for step in &symbolic.fronts[fronts] {
+        for (step, stored) in
+            symbolic.fronts.all[fronts.clone()].iter().zip(&symbolic.stored[fronts])
+        {
             let counts = [step.own_count(), step.rows.len()].map(panel_count);
             panels = std::array::from_fn(|i| panels[i].max(counts[i]));
             if step.own_count() > 0 {
-                self.add_step(step, &places, front, values.len());
+                self.add_step((step, stored), &places, front, values.len());
             }
         }
         let steps = first_step..self.steps.len();
@@ -100,7 +103,13 @@ impl Plan {
         self.tasks.len() - 1
     }
 
-    fn add_step(&mut self, front: &Front, places: &Range<usize>, root: &Front, values: usize) {
+    fn add_step(
+        &mut self,
+        (front, stored): (&Front, &Stored),
+        places: &Range<usize>,
+        root: &Front,
+        values: usize,
+    ) {
         let own_places = front.own_places();
         let own = own_places.start - places.start..own_places.end - places.start;
         let first_rows = self.rows.len();
@@ -118,8 +127,8 @@ impl Plan {
         }
         self.steps.push(Step {
             own,
-            inverse: front.inverse.clone(),
-            below: front.below.clone(),
+            inverse: stored.inverse.clone(),
+            below: stored.below.clone(),
             rows: first_rows..self.rows.len(),
         });
     }

@@ -4,11 +4,12 @@ use pulp::{Arch, Scalar, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::super::field::Field;
+use super::super::fronts::Front;
 use super::dense::{self, Product, QUAD, Row, Scratch};
 use super::factor::Factor;
 use super::panel::{LANES, ROWS};
 use super::plan::{Plan, Step, Task};
-use super::symbolic::{Front, Symbolic};
+use super::symbolic::Symbolic;
 
 /// Particles that one task reads out at the least.
 const CHUNK: usize = 4096;
@@ -87,7 +88,7 @@ impl<'a> Sweep<'a> {
 
     /// A child's last front and its rows below, at the end of the values of its subtree.
     fn passed<'v>(&self, (child, values): Part<'v>) -> (&'a Front, &'v mut [Row]) {
-        let front = &self.symbolic.fronts[self.plan.tasks[child].root];
+        let front = &self.symbolic.fronts.all[self.plan.tasks[child].root];
         let start = values.len() - 1 - front.rows.len();
         (front, &mut values[start..])
     }
@@ -98,7 +99,8 @@ impl<'a> Sweep<'a> {
         let (halves, values) = self.cut(task, values);
         let (own, rest) = values.split_at_mut(task.places.len());
         let [x, y, z] = r.0.each_ref().map(Vec::as_slice);
-        for (own, &particle) in own.iter_mut().zip(&self.symbolic.order[task.places.clone()]) {
+        for (own, &particle) in own.iter_mut().zip(&self.symbolic.fronts.order[task.places.clone()])
+        {
             let i = particle as usize;
             *own = [x[i], y[i], z[i], 0.0];
         }

@@ -1,128 +1,53 @@
-//! What is known before any number is: the fronts of all blocks and how they fit into each other.
+//! Where the numbers of each front are in the factor.
 
 use std::ops::Range;
 
 use boucle_geometry::Vector;
 
-use super::super::dissection::{Block, Dissection};
+use super::super::fronts::{Front, Fronts};
 use super::super::laplacian::Graph;
 use super::panel::{inverse_len, panel_count};
 
-/// Rows of a child's front that follow each other in its parent's as well.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Run {
-    /// Row of the child, counted from the first below its own.
-    pub(super) from: u32,
-    /// Row of the parent, its own included.
-    pub(super) to: u32,
-    pub(super) count: u32,
-}
-
-/// One block: its own particles first, then those below.
+/// The vectors of one front.
 #[derive(Clone, Debug)]
-pub(super) struct Front {
-    pub(super) block: Block,
-    /// Places of the particles below, ascending.
-    pub(super) rows: Vec<u32>,
-    /// How those lie in the parent's front.
-    pub(super) runs: Vec<Run>,
-    /// Where its S⁻¹ is in the factor.
+pub(super) struct Stored {
+    /// S⁻¹.
     pub(super) inverse: Range<usize>,
-    /// Where its W is.
+    /// W.
     pub(super) below: Range<usize>,
 }
 
-impl Front {
-    pub(super) fn own_count(&self) -> usize {
-        self.block.own.len()
-    }
-
-    /// Particles, own and below.
-    pub(super) fn count(&self) -> usize {
-        self.own_count() + self.rows.len()
-    }
-
-    /// How many vectors a solve reads for it.
+impl Stored {
+    /// How many vectors a solve reads.
     pub(super) fn work(&self) -> usize {
         self.inverse.len() + 2 * self.below.len()
     }
-
-    pub(super) fn own_places(&self) -> Range<usize> {
-        self.block.own.start as usize..self.block.own.end as usize
-    }
-
-    /// The places of its subtree.
-    pub(super) fn places(&self) -> Range<usize> {
-        self.block.first_place as usize..self.block.own.end as usize
-    }
 }
 
-/// All fronts, children before parents.
+/// All fronts and their vectors.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Symbolic {
-    pub(super) fronts: Vec<Front>,
-    /// The particle at each place.
-    pub(super) order: Vec<u32>,
-    /// The place of each particle.
-    pub(super) places: Vec<u32>,
-    /// Vectors of all S⁻¹.
-    pub(super) inverse_len: usize,
-    /// Those of all W.
-    pub(super) below_len: usize,
+    pub(super) fronts: Fronts,
+    /// Of each front.
+    pub(super) stored: Vec<Stored>,
 }
 
 impl Symbolic {
     pub(super) fn new(graph: &Graph, positions: &[Vector]) -> Self {
-        let Dissection { blocks, order, places } = Dissection::new(graph, positions);
-        let mut symbolic = Self { order, places, ..Self::default() };
-        for block in blocks {
-            let rows = symbolic.rows_below(graph, &block);
-            let own = block.own.len();
-            let inverse = symbolic.inverse_len..symbolic.inverse_len + inverse_len(own);
-            let below = symbolic.below_len..symbolic.below_len + panel_count(rows.len()) * own;
-            (symbolic.inverse_len, symbolic.below_len) = (inverse.end, below.end);
-            let front = Front { block, rows, runs: Vec::new(), inverse, below };
-            for child in front.block.children.into_iter().flatten() {
-                let child = &mut symbolic.fronts[child as usize];
-                child.runs = runs(&child.rows, &front);
-            }
-            symbolic.fronts.push(front);
-        }
-        symbolic
-    }
-
-    /// The places that a block touches after its own: its particles' neighbors and its children's rows.
-    fn rows_below(&self, graph: &Graph, block: &Block) -> Vec<u32> {
-        let own = &self.order[block.own.start as usize..block.own.end as usize];
-        let neighbors = own.iter().flat_map(|&particle| graph.neighbors(particle));
-        let children = block.children.into_iter().flatten();
-        let mut rows: Vec<u32> = neighbors
-            .map(|&neighbor| self.places[neighbor as usize])
-            .chain(children.flat_map(|child| self.fronts[child as usize].rows.iter().copied()))
-            .filter(|&place| place >= block.own.end)
-            .collect();
-        rows.sort_unstable();
-        rows.dedup();
-        rows
-    }
-}
-
-/// Where a child's rows are in its parent's front.
-fn runs(rows: &[u32], parent: &Front) -> Vec<Run> {
-    let own = &parent.block.own;
-    let mut runs: Vec<Run> = Vec::new();
-    let mut below = 0;
-    for (from, &place) in rows.iter().enumerate() {
-        let to = if own.contains(&place) {
-            place - own.start
-        } else {
-            below += parent.rows[below..].partition_point(|&row| row < place);
-            own.len() as u32 + below as u32
+        let fronts = Fronts::new(graph, positions);
+        let (mut inverse, mut below) = (0..0, 0..0);
+        let store = |front: &Front| {
+            let own = front.own_count();
+            inverse = inverse.end..inverse.end + inverse_len(own);
+            below = below.end..below.end + panel_count(front.rows.len()) * own;
+            Stored { inverse: inverse.clone(), below: below.clone() }
         };
-        match runs.last_mut() {
-            Some(run) if run.to + run.count == to => run.count += 1,
-            _ => runs.push(Run { from: from as u32, to, count: 1 }),
-        }
+        let stored = fronts.all.iter().map(store).collect();
+        Self { fronts, stored }
     }
-    runs
+
+    /// Vectors of all S⁻¹ and of all W.
+    pub(super) fn lens(&self) -> [usize; 2] {
+        self.stored.last().map_or([0; 2], |last| [last.inverse.end, last.below.end])
+    }
 }

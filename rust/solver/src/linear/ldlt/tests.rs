@@ -2,7 +2,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::super::conjugate_gradient::{ConjugateGradient, Stop};
 use super::super::laplacian::Forward;
-use super::super::problems::{grid, matrix};
+use super::super::problems::{grid, matrix, noise};
 use super::*;
 use crate::interrupter::Interrupter;
 use crate::scatter::scattered;
@@ -21,12 +21,6 @@ fn dense(graph: &Graph, matrix: &Laplacian) -> DMatrix<f64> {
         }
     }
     dense
-}
-
-fn noise(count: usize) -> Field {
-    Field(std::array::from_fn(|axis| {
-        (0..count as u64).map(|i| scattered(3 * i + axis as u64) as f32).collect()
-    }))
 }
 
 fn worst_error(positions: &[Vector], pairs: &[[u32; 2]], pins: &[usize]) -> f64 {

@@ -79,6 +79,7 @@ def main(words: list[str]) -> int:
     import bench_bridge
     import bench_contact
     import bench_explicit
+    import bench_fabric
     import bench_solver
 
     entries = {
@@ -86,6 +87,7 @@ def main(words: list[str]) -> int:
         "bridge": bench_bridge.bench,
         "solver": bench_solver.bench,
         "contact": bench_contact.bench,
+        "fabric": bench_fabric.bench,
     }
     names = list(entries) if words == ["all"] else words
     unknown = [name for name in names if name not in entries]

@@ -88,9 +88,6 @@ def drape(bpy: Any, piece: Piece, x: float, y: float, cells: int, frames: int) -
     bpy.ops.boucle.apply_preset(preset=piece.preset)
     settings.model = "fabric"
     settings.use_live = False
-    # Where stiff and light cloth lies on something, BDF2 at the six steps a frame of contact lets chiffon and linen go on
-    # moving by 0.6 m/s. What counts here is how the cloth hangs, not how it comes there.
-    settings.integrator = "implicit_euler"
     settings.frame_start, settings.frame_end = 1, frames
     # Air that stops a vertex within about a third of a second.
     settings.air_damping = 3.0 * settings.density * SIDE**2 / (cells + 1) ** 2

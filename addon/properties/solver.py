@@ -70,9 +70,9 @@ class SolverProperties:
     )  # fmt: skip
     linear_solver: EnumProperty(
         name="Linear Solver",
-        description="What inverts the constant part of an implicit step's equations",
+        description="What stands for the inverse of an implicit step's equations",
         items=(
-            ("auto", "Automatic", "By the number of vertices"),
+            ("auto", "Automatic", "Fabric by its own equations, the rest by the number of vertices"),
             ("ldlt", "LDLT", "Exactly, by elimination"),
             ("multigrid", "Multigrid", "Nearly, over coarser and coarser equations"),
         ),

@@ -68,15 +68,16 @@ impl IntegratorKind {
     }
 }
 
-/// What inverts the constant matrix of an implicit step.
+/// What inverts the matrix that stands for that of an implicit step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LinearSolver {
-    /// By the number of particles.
+    /// Up to 20 000 particles with fabric among them, the step's own matrix, eliminated in each iteration; else the constant
+    /// one, by the number of particles.
     #[default]
     Auto,
-    /// Exactly, by elimination.
+    /// The constant one, exactly, by elimination.
     Ldlt,
-    /// Nearly, by a cycle over coarser and coarser matrices.
+    /// The constant one, nearly, by a cycle over coarser and coarser matrices.
     Multigrid,
 }
 
@@ -108,7 +109,7 @@ pub struct Settings {
     /// How exact an implicit integrator is where `Auto` picks the steps: ten times what a step may be off, relative to the
     /// cloths' size.
     pub tolerance: f64,
-    /// What inverts the constant matrix of an implicit step.
+    /// What inverts the matrix that stands for that of an implicit step.
     pub linear_solver: LinearSolver,
     /// Height of the unevenness given to a sheet as the first step starts, as a part of its mean edge; 1e-6 lets a
     /// flat sheet in a symmetric scene buckle, 0 leaves it as it is.

@@ -76,7 +76,7 @@ impl Fabric {
     /// Refuses values outside their domains, named as in the scene file.
     ///
     /// # Errors
-    /// [`Error::OutOfDomain`](crate::Error::OutOfDomain) for the first value that is not accepted.
+    /// [`Error::OutOfDomain`] for the first value that is not accepted.
     pub fn check(&self) -> Result<()> {
         for (i, yarn) in ["warp", "weft"].iter().enumerate() {
             at_least_zero(&format!("fabric.stretch_{yarn} (N/m)"), self.stretch[i])?;

@@ -29,7 +29,7 @@ impl Factored {
         }
     }
 
-    /// The inverse of the Hessian without what bends; contacts count on its diagonal only.
+    /// The inverse of the Hessian without what bends; contacts count twice on its diagonal and nowhere else.
     pub(super) fn inverse(
         &mut self,
         hessian: &Hessian,

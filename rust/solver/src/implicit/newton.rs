@@ -17,20 +17,8 @@ impl Implicit {
         h: f64,
         whole: f64,
     ) {
-        let Self {
-            base,
-            at,
-            residual,
-            still,
-            observed,
-            hessian,
-            blocks,
-            taut,
-            gradients,
-            memory,
-            factored,
-            ..
-        } = self;
+        let Self { base, at, residual, still, observed, hessian, taut, gradients, memory, .. } =
+            self;
         let by_square = 1.0 / (h * h);
         let System { masses, inverse_masses, .. } = system;
         let from_rest = Motion { from: still, kick: 1.0, drift: 0.0, rate: Rate::New, stage: 1.0 };
@@ -58,9 +46,6 @@ impl Implicit {
         }
         hessian.freeze(system, observed, &at.position, h);
         hessian.tauten(taut.pulling());
-        if factored.is_none() || !contacts.matrix.is_empty() {
-            hessian.invert_blocks(system, &contacts.matrix, blocks);
-        }
         contacts.matrix.weigh(&hessian.inertia);
     }
 
@@ -81,6 +66,7 @@ impl Implicit {
         let inverse: &mut dyn Inverse = match factored {
             Some(factored) if contacts.is_empty() => factored.inverse(hessian, system, contacts),
             _ => {
+                hessian.invert_blocks(system, contacts, blocks);
                 let (inverse, contacts): (&mut dyn Inverse, _) = match factored {
                     Some(factored) => (factored.inverse(hessian, system, contacts), None),
                     None => (preconditioner.inverse(system, h), Some(contacts)),

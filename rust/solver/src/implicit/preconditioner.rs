@@ -69,6 +69,11 @@ impl Preconditioner {
 
     /// The inverse for steps of h' seconds.
     pub(super) fn inverse(&mut self, system: &System, h: f64) -> &mut dyn Inverse {
+        self.both(system, h).0
+    }
+
+    /// The inverse and the matrix itself.
+    pub(super) fn both(&mut self, system: &System, h: f64) -> (&mut dyn Inverse, Forward<'_>) {
         let is_fresh = self.step.to_bits() == h.to_bits();
         if !is_fresh {
             self.matrix = self.matrix(system, h);
@@ -92,20 +97,7 @@ impl Preconditioner {
                 Kind::Cycle(Multigrid::new(pairs, matrix, positions, is_pinned))
             }
         };
-        inverse.insert(kind).as_inverse()
-    }
-
-    /// The inverse for steps of h' seconds and the matrix itself; none before there was a step.
-    pub(super) fn both(
-        &mut self,
-        system: &System,
-        h: f64,
-    ) -> Option<(&mut dyn Inverse, Forward<'_>)> {
-        if h > 0.0 {
-            self.inverse(system, h);
-        }
-        let Self { inverse, graph, matrix, .. } = self;
-        Some((inverse.as_mut()?.as_inverse(), Forward { graph, matrix }))
+        (inverse.insert(kind).as_inverse(), Forward { graph, matrix })
     }
 
     /// Takes the present stiffness of the cloths' springs.

@@ -100,7 +100,7 @@ impl Implicit {
     fn pull_once(&mut self, system: &System) {
         let Self { taut, gradients, preconditioner, at, residual, base, pulling, .. } = self;
         let Scratch { tensions, moved, product } = pulling;
-        let Some((inverse, matrix)) = preconditioner.both(system, self.step) else { return };
+        let (inverse, matrix) = preconditioner.both(system, self.step);
         matrix.apply(moved, product);
         for (out, product) in residual.position.0.iter_mut().zip(&product.0) {
             for (i, (out, product)) in out.iter_mut().zip(product).enumerate() {

@@ -73,7 +73,8 @@ impl Fronts {
         fronts
     }
 
-    /// The places in a front of some particle's row, or none if it was eliminated before: its own places, then those below.
+    /// The row of a particle in a front that it takes part in: its own come first, then those below; none if it was eliminated
+    /// before.
     pub(super) fn row_of(&self, front: &Front, particle: u32) -> Option<usize> {
         let place = self.places[particle as usize];
         let own = &front.block.own;

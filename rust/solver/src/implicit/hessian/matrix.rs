@@ -13,7 +13,7 @@ const TASK: usize = 1024;
 
 /// What joins a pair of particles.
 #[derive(Clone, Copy, Debug)]
-struct Joint {
+struct Coupling {
     /// The smaller particle first.
     ends: [u32; 2],
     spring: Option<Place>,
@@ -24,7 +24,7 @@ struct Joint {
 /// Where the Hessian has its blocks.
 #[derive(Clone, Debug)]
 pub(in crate::implicit) struct Pattern {
-    joints: Vec<Joint>,
+    couplings: Vec<Coupling>,
     /// For each particle, where its pairs begin, and the end of the last.
     starts: Vec<u32>,
     pairs: Vec<u32>,
@@ -35,22 +35,23 @@ impl Pattern {
     pub(in crate::implicit) fn new(pairs: &[[u32; 2]], system: &System) -> Self {
         let count = system.particle_count();
         let springs = system.layout.places(pairs.iter().copied(), count, false);
-        let joint = |(&[a, b], spring): (&[u32; 2], Option<Place>)| {
+        let coupling = |(&[a, b], spring): (&[u32; 2], Option<Place>)| {
             let ends = [a.min(b), a.max(b)];
-            Joint { ends, spring, edge: system.fabrics.edge_between(ends) }
+            Coupling { ends, spring, edge: system.fabrics.edge_between(ends) }
         };
-        let joints: Vec<Joint> = pairs.iter().zip(springs).map(joint).collect();
-        let both = |(pair, joint): (usize, &Joint)| joint.ends.map(|end| (end, pair as u32));
-        let mut halves: Vec<(u32, u32)> = joints.iter().enumerate().flat_map(both).collect();
+        let couplings: Vec<Coupling> = pairs.iter().zip(springs).map(coupling).collect();
+        let both =
+            |(pair, coupling): (usize, &Coupling)| coupling.ends.map(|end| (end, pair as u32));
+        let mut halves: Vec<(u32, u32)> = couplings.iter().enumerate().flat_map(both).collect();
         halves.sort_unstable();
         let start = |particle| halves.partition_point(|(own, _)| *own < particle) as u32;
         let starts = (0..=count as u32).map(start).collect();
-        Self { starts, pairs: halves.into_iter().map(|(_, pair)| pair).collect(), joints }
+        Self { starts, pairs: halves.into_iter().map(|(_, pair)| pair).collect(), couplings }
     }
 }
 
 impl Hessian {
-    /// Writes the blocks. Contacts count on the diagonal only.
+    /// Writes the blocks. Contacts count twice on the diagonal and nowhere else, as in the blocks of smoothing.
     pub(in crate::implicit) fn write(
         &self,
         pattern: &Pattern,
@@ -59,8 +60,8 @@ impl Hessian {
         out: &mut BlockMatrix,
     ) {
         let BlockMatrix { diagonal, pairs, least } = out;
-        let joints = pattern.joints.par_iter().with_min_len(TASK);
-        joints.map(|joint| self.block(joint, system)).collect_into_vec(pairs);
+        let couplings = pattern.couplings.par_iter().with_min_len(TASK);
+        couplings.map(|coupling| self.block(coupling, system)).collect_into_vec(pairs);
         least.clone_from(&self.inertia);
         for entries in &mut *diagonal {
             entries.resize(self.inertia.len(), 0.0);
@@ -75,19 +76,19 @@ impl Hessian {
             contacts.add_blocks(first, &mut blocks);
         });
         let is_still = |end: u32| self.inertia[end as usize] <= 0.0;
-        let still = pairs.iter_mut().zip(&pattern.joints);
-        for (block, _) in still.filter(|(_, joint)| joint.ends.into_iter().any(is_still)) {
+        let still = pairs.iter_mut().zip(&pattern.couplings);
+        for (block, _) in still.filter(|(_, coupling)| coupling.ends.into_iter().any(is_still)) {
             block.fill(0.0);
         }
     }
 
     /// The block of a pair, row by row.
-    fn block(&self, joint: &Joint, system: &System) -> [f32; 9] {
+    fn block(&self, coupling: &Coupling, system: &System) -> [f32; 9] {
         let mut block = [0.0; 9];
-        if let Some(edge) = joint.edge {
+        if let Some(edge) = coupling.edge {
             block = self.fabric.block(&system.fabrics, edge as usize);
         }
-        let [x, y, z, beta] = match joint.spring {
+        let [x, y, z, beta] = match coupling.spring {
             None => return block,
             Some(Place::Diagonal(diagonal, spring)) => {
                 let numbers = &self.diagonals[diagonal as usize].0;

@@ -45,7 +45,7 @@ impl Shape {
 }
 
 /// Eliminates the own columns of a front in place, and subtracts what they make of the rows below from the rest. Both hold
-/// whole columns, of which the lower triangle counts. Pivots become their reciprocals and are at least `least`.
+/// whole columns, of which the lower triangle counts. The diagonal of L becomes its reciprocal; pivots are at least `least`.
 #[inline(always)]
 pub(super) fn eliminate<S: Simd, const VECTORS: usize>(
     simd: S,
@@ -155,6 +155,7 @@ fn factor_columns(columns: &mut [f32], size: usize, first: usize, least: &[f32])
                 *to -= factor * from;
             }
         }
+        // A pivot that is no number becomes `least`; the rest of its row and column still says so to the solve.
         let reciprocal = 1.0 / column[0].max(least[first + j]).sqrt();
         for number in &mut *column {
             *number *= reciprocal;

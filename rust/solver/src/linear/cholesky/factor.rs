@@ -5,7 +5,7 @@ use std::cell::Cell;
 use pulp::{Scalar, Simd, WithSimd};
 
 use super::dense::{self, ROWS, Shape, Tile};
-use super::{AXES, BlockMatrix, Cholesky, Place};
+use super::{AXES, BlockMatrix, BlockPlace, Cholesky};
 use crate::linear::fronts::Front;
 
 /// Subtrees of fewer fronts are one task.
@@ -70,7 +70,13 @@ impl Cholesky {
 }
 
 /// Adds a matrix's own entries to a front's columns.
-fn assemble(matrix: &BlockMatrix, own: &[u32], places: &[Place], columns: &mut [f32], size: usize) {
+fn assemble(
+    matrix: &BlockMatrix,
+    own: &[u32],
+    places: &[BlockPlace],
+    columns: &mut [f32],
+    size: usize,
+) {
     for (i, &particle) in own.iter().enumerate() {
         let [xx, yx, yy, zx, zy, zz] =
             matrix.diagonal.each_ref().map(|entries| entries[particle as usize]);

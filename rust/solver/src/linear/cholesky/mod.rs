@@ -9,7 +9,7 @@
 //! [A  U ] = [B  I] [   U - B Bᵀ]         B = A L⁻ᵀ
 //! ```
 //!
-//! [L; B] is kept, column by column, with the reciprocals of the pivots in their place; the rest goes up to the parent. All of
+//! [L; B] is kept, column by column, with the reciprocals of L's diagonal in its place; the rest goes up to the parent. All of
 //! it is f32: what rounding leaves is for conjugate gradients to mend. A pivot is never taken below the part of the matrix
 //! that is on its diagonal alone (inertia): no exact pivot is, so the inverse stays positive definite.
 //!
@@ -52,7 +52,7 @@ pub(crate) struct BlockMatrix {
 
 /// A block of the matrix in a front.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct BlockPlace {
     pair: u32,
     /// Among the front's particles.
     row: u32,
@@ -65,7 +65,7 @@ struct Place {
 pub(crate) struct Cholesky {
     fronts: Fronts,
     /// Of each front, its particles' pairs with each other and with those below.
-    places: Vec<Vec<Place>>,
+    places: Vec<Vec<BlockPlace>>,
     /// Of each front, where its columns are.
     columns: Vec<Range<usize>>,
     /// Of each front, where its values are: its own particles' and those below.
@@ -114,13 +114,13 @@ impl Cholesky {
 }
 
 /// Where the blocks of a front's own columns are, diagonal aside.
-fn places(fronts: &Fronts, front: &Front, graph: &Graph) -> Vec<Place> {
+fn places(fronts: &Fronts, front: &Front, graph: &Graph) -> Vec<BlockPlace> {
     let own = fronts.order[front.own_places()].iter().enumerate();
     let of = |(column, &particle): (usize, &u32)| {
         let below = graph.edges(particle).filter_map(move |(neighbor, pair)| {
             let row = fronts.row_of(front, neighbor).filter(|row| *row > column)?;
             let is_turned = particle < neighbor;
-            Some(Place { pair, row: row as u32, column: column as u32, is_turned })
+            Some(BlockPlace { pair, row: row as u32, column: column as u32, is_turned })
         });
         below.collect::<Vec<_>>()
     };

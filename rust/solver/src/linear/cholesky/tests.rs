@@ -153,3 +153,28 @@ fn pinned_particles_stay_exactly_where_they_are_and_threads_change_no_bit() {
         }
     }
 }
+
+/// What is no number must not be lost on the way: the solve that it comes from gives up.
+#[test]
+fn what_is_no_number_comes_out_as_none() {
+    let (positions, pairs) = grid(9, 9);
+    let count = positions.len();
+    let graph = Graph::new(count, &pairs);
+    let good = matrix(&pairs, count, &[], 1.0);
+    for bad in [f32::NAN, f32::INFINITY] {
+        for (in_pair, in_vector) in [(true, false), (false, true)] {
+            let (mut matrix, mut r) = (good.clone(), noise(count));
+            if in_pair {
+                matrix.pairs[40][4] = bad;
+            }
+            if in_vector {
+                r.0[1][17] = bad;
+            }
+            let mut cholesky = Cholesky::new(&graph, &positions);
+            cholesky.factor(&matrix);
+            let mut z = Field::zeros(count);
+            cholesky.apply_inverse(&r, &mut z);
+            assert!(z.0.iter().flatten().any(|z| !z.is_finite()), "{bad} {in_pair}");
+        }
+    }
+}

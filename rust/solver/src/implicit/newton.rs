@@ -62,19 +62,12 @@ impl Implicit {
         let matrix = &hessian.without_bends(system, contacts);
         let operator = hessian.on(system, contacts);
         let largest = hessian.largest();
-        let mut smoothed;
-        let inverse: &mut dyn Inverse = match factored {
-            Some(factored) if contacts.is_empty() => factored.inverse(hessian, system, contacts),
-            _ => {
-                hessian.invert_blocks(system, contacts, blocks);
-                let (inverse, contacts): (&mut dyn Inverse, _) = match factored {
-                    Some(factored) => (factored.inverse(hessian, system, contacts), None),
-                    None => (preconditioner.inverse(system, h), Some(contacts)),
-                };
-                smoothed = Smoothed { matrix, contacts, blocks, inverse, largest, scratch };
-                &mut smoothed
-            }
+        hessian.invert_blocks(system, contacts, blocks);
+        let (inverse, contacts): (&mut dyn Inverse, _) = match factored {
+            Some(factored) => (factored.inverse(hessian, system, contacts), None),
+            None => (preconditioner.inverse(system, h), Some(contacts)),
         };
+        let inverse = &mut Smoothed { matrix, contacts, blocks, inverse, largest, scratch };
         if system.air.pressures.is_empty() {
             return gradients.solve(&operator, inverse, stop);
         }

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .cutting import Cut, Kind, strip
-from .elastica import FLAT_TIP, Profile, gamma_of_chord, profile
+from .elastica import FLAT_TIP, Hanging, Profile, gamma_of_chord, profile
 from .fabric import GRAVITY, Fabric
 from .resting import Load, Resting, Specimen, settle
 
@@ -33,7 +33,7 @@ DIRECTIONS = {"warp": (1.0, 0.0), "weft": (0.0, 1.0), "bias": (1.0, 1.0)}
 
 
 @dataclass(frozen=True)
-class Overhang:
+class Overhang(Hanging):
     """A strip at rest over the edge."""
 
     length: float
@@ -43,16 +43,6 @@ class Overhang:
     down: np.ndarray
     """How far below it (m)."""
     resting: Resting
-
-    @property
-    def droop(self) -> float:
-        """H/W at the tip."""
-        return float(self.down[-1] / self.out[-1])
-
-    @property
-    def chord(self) -> float:
-        """The angle (degrees) below the level of the line from the edge to the tip."""
-        return float(np.degrees(np.arctan2(self.down[-1], self.out[-1])))
 
 
 @dataclass(frozen=True)

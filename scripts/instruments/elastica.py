@@ -22,16 +22,13 @@ MOST = 140.0
 """The largest `gamma` that is solved."""
 
 
-@dataclass(frozen=True)
-class Profile:
-    """The shape of a strip, by length from the clamp."""
+class Hanging:
+    """The middle line of a strip that is clamped at one end."""
 
-    along: np.ndarray
-    """(n,), 0 to 1."""
     out: np.ndarray
-    """How far from the clamp, as a part of the length."""
+    """How far from the clamp."""
     down: np.ndarray
-    """How far below it, as a part of the length."""
+    """How far below it."""
 
     @property
     def droop(self) -> float:
@@ -42,6 +39,18 @@ class Profile:
     def chord(self) -> float:
         """The angle (degrees) below the level of the line from the clamp to the tip."""
         return float(np.degrees(np.arctan2(self.down[-1], self.out[-1])))
+
+
+@dataclass(frozen=True)
+class Profile(Hanging):
+    """The shape of a strip, by length from the clamp."""
+
+    along: np.ndarray
+    """(n,), 0 to 1."""
+    out: np.ndarray
+    """How far from the clamp, as a part of the length."""
+    down: np.ndarray
+    """How far below it, as a part of the length."""
 
 
 def profile(gamma: float, count: int = 101) -> Profile:

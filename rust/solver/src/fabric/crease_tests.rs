@@ -1,6 +1,6 @@
 //! Creases and friction of bending against closed forms.
 
-use super::tests::{cloth, forces, sheet, uneven};
+use super::tests::{assert_forces_are_the_slope, cloth, forces, sheet, uneven};
 use super::*;
 use crate::scatter::scattered;
 
@@ -191,20 +191,7 @@ fn forces_on_creased_cloth_are_the_slope_of_its_energy() {
         fabrics.give_way(&shaken(&positions, 0.02, 100 * seed));
     }
     let state = shaken(&positions, 0.02, 900);
-    let forces = forces(&fabrics, &state);
-    let largest = forces.iter().map(Vector::norm).fold(0.0, f64::max);
-    for (particle, force) in forces.iter().enumerate() {
-        for axis in 0..3 {
-            let at = |step: f64| {
-                let mut moved = state.clone();
-                moved.position.0[axis][particle] += step;
-                fabrics.energy(0..1, &moved)
-            };
-            let slope = -(at(1e-6) - at(-1e-6)) / 2e-6;
-            let error = (force[axis] - slope).abs() / largest;
-            assert!(error < 1e-6, "particle {particle}, axis {axis}: {error:e}");
-        }
-    }
+    assert_forces_are_the_slope(&fabrics, &state);
 }
 
 /// Faces between three pins do not bend, so nothing is left in them; where they are let go, what was left before is there.

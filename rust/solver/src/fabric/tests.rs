@@ -79,11 +79,9 @@ pub(super) fn forces(fabrics: &Fabrics, state: &State) -> Vec<Vector> {
     (0..state.len()).map(|i| Vector::from_fn(|axis, _| sums[axis][i])).collect()
 }
 
-#[test]
-fn forces_are_the_slope_of_the_energy() {
-    let (cloth, state) = crumpled();
-    let fabrics = Fabrics::new(&[cloth]);
-    let forces = forces(&fabrics, &state);
+/// Forces against central differences of the energy, of every particle and axis.
+pub(super) fn assert_forces_are_the_slope(fabrics: &Fabrics, state: &State) {
+    let forces = forces(fabrics, state);
     let largest = forces.iter().map(Vector::norm).fold(0.0, f64::max);
     for (particle, force) in forces.iter().enumerate() {
         for axis in 0..3 {
@@ -97,6 +95,12 @@ fn forces_are_the_slope_of_the_energy() {
             assert!(error < 1e-6, "particle {particle}, axis {axis}: {error:e}");
         }
     }
+}
+
+#[test]
+fn forces_are_the_slope_of_the_energy() {
+    let (cloth, state) = crumpled();
+    assert_forces_are_the_slope(&Fabrics::new(&[cloth]), &state);
 }
 
 /// The bent shape of a sheet: a cylinder about a direction, flat to first order.

@@ -139,6 +139,12 @@ impl Cloth {
         Ok(Self { springs, fabric: Some(fabric), ..self })
     }
 
+    /// Area (m²) of its faces at rest.
+    pub(crate) fn area(&self) -> f64 {
+        let faces = 0..self.mesh.faces().count();
+        faces.map(|face| self.mesh.vector_area(face, self.rest()).norm()).sum()
+    }
+
     /// Refuses a cloth that cannot be simulated.
     ///
     /// # Errors

@@ -95,10 +95,10 @@ impl Bodies {
             meets_cloths: Vec::new(),
             all_touch: true,
         };
+        bodies.pair(cloths);
         for (cloth, base) in placed(cloths) {
             bodies.add_cloth(cloth, base, colliders.len());
         }
-        bodies.pair(cloths);
         for collider in colliders {
             bodies.add_collider(collider);
         }
@@ -136,8 +136,12 @@ impl Bodies {
             && !meets.contains(&false)
             && collision.excluded_from_self.is_empty()
             && collision.excluded_from_colliders.is_empty();
+        let others = self.meets_cloths[body as usize].iter().enumerate();
+        let meets_another =
+            others.into_iter().any(|(other, meets)| *meets && other != body as usize);
+        let meets_any = collision.with_self || meets_another || meets.contains(&true);
         self.meets.push(meets);
-        if cloth.collision.is_some() {
+        if cloth.collision.is_some() && meets_any {
             self.cloths.add_mesh(&cloth.mesh, base);
         }
     }

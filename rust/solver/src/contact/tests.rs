@@ -645,3 +645,28 @@ fn intersections_are_those_of_all_pairs() {
         assert_eq!(expected == 0, amplitude == 0.0);
     }
 }
+
+#[test]
+fn only_what_can_meet_something_is_looked_at() {
+    let meeting = |with_self, colliders| {
+        let mut cloth = soup(1, 0);
+        cloth.collision = Some(Collision { with_self, colliders, ..Collision::default() });
+        cloth
+    };
+    let (lone, beside) = (meeting(false, None), meeting(false, Some(Vec::new())));
+    let ground = Collider {
+        name: "ground".to_owned(),
+        shape: Shape::Plane,
+        positions: vec![Vector::zeros(), Vector::z()],
+        thickness: 0.001,
+        friction: 0.0,
+    };
+    let is_empty = |cloths: &[Cloth], colliders: &[Collider]| {
+        Contacts::new(cloths, colliders, &Interrupter::default()).is_empty()
+    };
+    assert!(is_empty(std::slice::from_ref(&lone), &[]));
+    assert!(is_empty(std::slice::from_ref(&beside), std::slice::from_ref(&ground)));
+    assert!(!is_empty(std::slice::from_ref(&lone), std::slice::from_ref(&ground)));
+    assert!(!is_empty(&[meeting(true, None)], &[]));
+    assert!(!is_empty(&[lone, beside], &[]));
+}

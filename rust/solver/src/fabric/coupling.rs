@@ -12,6 +12,9 @@
 //! **In the tangent**, the part S + T of the triangles beside an edge, S symmetric and T d = t x d; and, where smoothing works
 //! with it, a number c for the hinges near by, as if each were alone and resisted in all directions: `-k w_i w_j` of each pair
 //! of its corners, whose heights count `w_i` in its angle. So the wings of a hinge are a pair as well.
+//!
+//! **In the factored Hessian**, which knows no wings, hinges resist at most as the pairs with positive c do together: those that
+//! pull apart, the ends of the edge and the wings, are left out.
 
 use pulp::Simd;
 
@@ -38,6 +41,8 @@ pub(super) struct Couplings {
     of_hinges: Vec<[(u32, f64); 6]>,
     /// Of each pair: stiffness c (N/m) and damping (N·s/m) of hinges that are alone.
     pub(super) bends: Vec<[f64; 2]>,
+    /// Of each edge, the same bounded from above.
+    pub(super) most_bends: Vec<[f64; 2]>,
 }
 
 impl Couplings {
@@ -71,7 +76,8 @@ impl Couplings {
         });
         let of_hinges = of_hinges.collect();
         let bends = vec![[0.0; 2]; edges.len() + wings.len()];
-        Self { edges, sides, wings, of_hinges, bends }
+        let most_bends = vec![[0.0; 2]; edges.len()];
+        Self { edges, sides, wings, of_hinges, bends, most_bends }
     }
 
     /// The weight (N/m) of each edge in the constant matrix, in order, and what of it damps (N·s/m).
@@ -104,12 +110,18 @@ impl Couplings {
     /// Takes the stiffness of hinges that are alone, and the times (s) by which laws multiply it to damp.
     pub(super) fn follow(&mut self, hinges: &[Hinge], compliance: &Compliance, times: &[f64]) {
         self.bends.fill([0.0; 2]);
+        self.most_bends.fill([0.0; 2]);
         for (number, (one, pairs)) in hinges.iter().zip(&self.of_hinges).enumerate() {
             let stiffness = compliance.stiffness_alone(number);
-            for &(pair, weight) in pairs {
-                let [c, damping] = &mut self.bends[pair as usize];
+            let add = |[c, damping]: &mut [f64; 2], weight: f64| {
                 *c += stiffness * weight;
                 *damping += times[one.law as usize] * stiffness * weight;
+            };
+            for &(pair, weight) in pairs {
+                add(&mut self.bends[pair as usize], weight);
+                if let Some(most) = self.most_bends.get_mut(pair as usize) {
+                    add(most, weight.max(0.0));
+                }
             }
         }
     }

@@ -4,8 +4,8 @@
 //! less, and P⁻¹ leaves them to hundreds of iterations; what those leave of the strain asks for smaller steps. With the
 //! Hessian's own factor two to five iterations do, and steps are two to four times as long.
 //!
-//! Hinges are left out: with their wings the factor would be eight times the work. Smoothing around it knows them: without, 128²
-//! takes twice the iterations, and a cantilever stops 13 % short of where it hangs.
+//! Of hinges it has a bound along edges: with their wings the factor would be eight times the work. Smoothing around it knows them:
+//! without, 128² takes twice the iterations, and a cantilever stops 13 % short of where it hangs.
 
 use super::hessian::{Hessian, Pattern};
 use super::preconditioner::Preconditioner;

@@ -136,9 +136,8 @@ impl Bodies {
             && !meets.contains(&false)
             && collision.excluded_from_self.is_empty()
             && collision.excluded_from_colliders.is_empty();
-        let others = self.meets_cloths[body as usize].iter().enumerate();
-        let meets_another =
-            others.into_iter().any(|(other, meets)| *meets && other != body as usize);
+        let mut pairs = self.meets_cloths[body as usize].iter().enumerate();
+        let meets_another = pairs.any(|(other, meets)| *meets && other != body as usize);
         let meets_any = collision.with_self || meets_another || meets.contains(&true);
         self.meets.push(meets);
         if cloth.collision.is_some() && meets_any {

@@ -82,7 +82,7 @@ const OF_FABRIC: Solving =
     Solving { stop: Stop { tolerance: 0.001, ..STOP }, is_factored: true, ..OF_SPRINGS };
 
 /// The same for light and stiff fabric, in which waves cross more of the cloth in a step, and come back larger: ripstop nylon
-/// hangs still in 4 steps a frame, and takes 9 with the limits of springs. Denim takes no fewer steps, and longer ones.
+/// hangs still in 4 steps a frame, and takes 9 with the limits of springs. Denim takes 5 with either.
 const OF_SWIFT_FABRIC: Solving =
     Solving { newton: OF_WOVEN.newton, left: OF_WOVEN.left, ..OF_FABRIC };
 

@@ -32,7 +32,7 @@ impl Factored {
         }
     }
 
-    /// The inverse of the Hessian without what bends; contacts count twice on its diagonal and nowhere else.
+    /// The inverse of the Hessian, with a bound of what bends; contacts count twice on its diagonal and nowhere else.
     pub(super) fn inverse(
         &mut self,
         hessian: &Hessian,

@@ -16,7 +16,7 @@
 //! from the inertial prediction `x = target + h'² g`, by conjugate gradients. Their preconditioner is the inverse of
 //! `P = M/h'² + D/h' + sum k_e L_e`, the matrix of Projective Dynamics, between two smoothings ([`smoothed`]). P is
 //! constant while step, stiffness and pins are, and one number for each pair of particles; bend springs are left out.
-//! For fabric, H itself without what bends is factored in its place ([`factored`]).
+//! For fabric, H itself with a bound of what bends is factored in its place ([`factored`]).
 //!
 //! Iterations end when one brings the guess nearer by a small part only of what all have, in the norm of H. Mostly two
 //! of Newton are made; BDF2 needs the second where cloth snaps taut. What is woven is solved further ([`solving`]).

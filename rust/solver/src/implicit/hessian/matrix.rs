@@ -1,4 +1,4 @@
-//! The Hessian without bend springs and hinges, written down as blocks on a graph of pairs of particles.
+//! The Hessian without bend springs, and with a bound of hinges, written down as blocks on a graph of pairs of particles.
 
 use rayon::prelude::*;
 

@@ -15,58 +15,37 @@
 //! (sum of S over faces) m = t          (rad)          E = 1/2 tᵀ m          (J)
 //! ```
 //!
-//! No weights to choose: any smooth surface bends with its B along any direction on any mesh, an edge with one face takes no
-//! moment, and a face all of whose corners are pinned does not bend. The sum is close to its diagonal, so a fixed number of
-//! Chebyshev steps stands for its inverse: a polynomial, whose energy, forces and tangents agree exactly.
+//! Any smooth surface bends with its B along any direction on any mesh, an edge with one face takes no moment, and a face all
+//! of whose corners are pinned does not bend. The sum is close to its diagonal, so a fixed number of Chebyshev steps stands for
+//! its inverse: a polynomial p, whose energy, forces and tangents agree exactly. Where curvature varies from face to face, R of
+//! [`variation`] is added:
+//!
+//! ```text
+//! m = p t          E = 1/2 (tᵀ m + mᵀ R m)          moments p (t + R m)
+//! ```
 //!
 //! Source: Morley 1968 for the element; Grinspun et al. 2006 for normals at edges.
-
-use std::ops::{Add, AddAssign, Mul, Sub};
 
 use nalgebra::{Matrix3, Vector3};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::packs::{LANES, Places};
+use super::packs::LANES;
+use super::rows::{Number, Rows};
+use super::variation;
 use crate::linear::chebyshev;
 
 /// Hinges that one task handles.
 const TASK: usize = 4096;
 
 /// Error of the moments that is left, as a part of them.
-const LEFT: f64 = 0.02;
+const LEFT: f64 = 0.01;
 
 /// The most Chebyshev steps: slivers are then stiffer than they should be.
 const MOST_STEPS: usize = 24;
 
 /// The least bending stiffness along one yarn, as a part of that along the other.
 const LEAST_PART: f64 = 1e-3;
-
-/// A number that moments and angles are computed in.
-pub(super) trait Number:
-    Copy
-    + Default
-    + Send
-    + Sync
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + AddAssign
-{
-    fn of(value: f32) -> Self;
-}
-
-impl Number for f32 {
-    fn of(value: f32) -> Self {
-        value
-    }
-}
-
-impl Number for f64 {
-    fn of(value: f32) -> Self {
-        value.into()
-    }
-}
 
 /// A face as its hinges see it.
 #[derive(Clone, Debug)]
@@ -81,7 +60,7 @@ pub(super) struct Face {
 
 impl Face {
     /// S (rad/(N·m)) at its three edges.
-    fn compliance(&self) -> Matrix3<f64> {
+    pub(super) fn compliance(&self) -> Matrix3<f64> {
         let stiffness = Matrix3::from_diagonal(&components(self.bend));
         let curvatures = self.curvatures();
         let stiffness = self.area() * curvatures.transpose() * stiffness * curvatures;
@@ -115,19 +94,15 @@ pub(super) fn components(bend: [f64; 2]) -> Vector3<f64> {
     Vector3::new(warp, weft, 0.5 * (warp * weft).sqrt())
 }
 
-/// The entries off the diagonal in the rows of a pack of hinges, and whose they are.
-#[derive(Clone, Debug)]
-struct Rows {
-    neighbors: [Places; 4],
-    values: [[f32; LANES]; 4],
-    /// For each hinge, the root of what its angle is multiplied by; 0 for one that takes no moment.
-    scale: [f32; LANES],
-}
-
 /// The sum of all compliances, scaled so that its diagonal is 1, and the polynomial that stands for its inverse.
 #[derive(Debug)]
 pub(super) struct Compliance {
-    rows: Vec<Rows>,
+    /// The entries off the diagonal.
+    rows: Vec<Rows<4>>,
+    /// What is added for curvature that varies.
+    variation: Vec<Rows<{ variation::WIDTH }>>,
+    /// For each hinge, the root of what its angle is multiplied by; 0 for one that takes no moment.
+    scale: Vec<[f32; LANES]>,
     /// `keep` and `gain` of each Chebyshev step.
     steps: Vec<[f32; 2]>,
     /// The largest eigenvalue of the polynomial.
@@ -141,6 +116,8 @@ pub(super) struct Scratch<N> {
     left: Vec<N>,
     step: Vec<N>,
     last: Vec<N>,
+    /// The moments, scaled, as if curvature did not vary.
+    unvaried: Vec<N>,
 }
 
 impl Compliance {
@@ -150,14 +127,16 @@ impl Compliance {
         faces: &[Face],
         is_rigid: impl Fn(usize) -> bool,
     ) -> Self {
+        let of_face = |(number, face): (usize, &Face)| {
+            let bends = !is_rigid(number) && face.bend.iter().any(|bend| *bend > 0.0);
+            bends.then(|| face.compliance())
+        };
+        let compliances: Vec<_> = faces.iter().enumerate().map(of_face).collect();
         let mut sums = vec![0.0; hinge_count];
         let mut entries: Vec<Vec<(u32, f64)>> = vec![Vec::new(); hinge_count];
         let mut bounds = [1.0_f64, 1.0_f64];
-        for (number, face) in faces.iter().enumerate() {
-            if is_rigid(number) || face.bend.iter().all(|bend| *bend <= 0.0) {
-                continue;
-            }
-            let compliance = face.compliance();
+        for (face, compliance) in faces.iter().zip(&compliances) {
+            let Some(compliance) = compliance else { continue };
             for i in 0..3 {
                 let Some(hinge) = face.hinges[i] else { continue };
                 sums[hinge as usize] += compliance[(i, i)];
@@ -167,36 +146,22 @@ impl Compliance {
                     }
                 }
             }
-            bounds = widened(bounds, &compliance);
+            bounds = widened(bounds, compliance);
         }
         for own in &mut entries {
             own.sort_by_key(|(other, _)| *other);
         }
-        let scale = |hinge: usize| if sums[hinge] > 0.0 { 1.0 / sums[hinge].sqrt() } else { 0.0 };
-        let pack = |first: usize| {
-            let count = LANES.min(hinge_count - first);
-            let entry = |lane: usize, place: usize| {
-                let own = (lane < count).then(|| entries[first + lane].get(place)).flatten();
-                // What lacks is the hinge itself, times 0.
-                own.map_or(
-                    (((first + lane).min(hinge_count - 1)) as u32, 0.0),
-                    |&(other, value)| (other, value * scale(first + lane) * scale(other as usize)),
-                )
-            };
-            let values = |place| std::array::from_fn(|lane| entry(lane, place).1 as f32);
-            Rows {
-                neighbors: [0, 1, 2, 3]
-                    .map(|place| Places::new(LANES, |lane| entry(lane, place).0)),
-                values: [0, 1, 2, 3].map(values),
-                scale: std::array::from_fn(|lane| {
-                    if lane < count { scale(first + lane) as f32 } else { 0.0 }
-                }),
-            }
-        };
+        let scale = |sum: &f64| if *sum > 0.0 { 1.0 / sum.sqrt() } else { 0.0 };
+        let mut scale: Vec<f64> = sums.iter().map(scale).collect();
+        let variation = variation::entries(hinge_count, faces, &compliances);
+        let (rows, variation) = (Rows::all(&entries, &scale), Rows::all(&variation, &scale));
+        scale.resize(hinge_count.next_multiple_of(LANES), 0.0);
         Self {
-            rows: (0..hinge_count).step_by(LANES).map(pack).collect(),
+            rows,
+            variation,
+            scale: scale.as_chunks().0.iter().map(|own| own.map(|of| of as f32)).collect(),
             steps: steps(bounds),
-            largest: (1.0 + LEFT) / bounds[0],
+            largest: (1.0 + LEFT) * (1.0 + (1.0 + LEFT) * variation::MOST) / bounds[0],
             arch: Arch::new(),
         }
     }
@@ -208,7 +173,7 @@ impl Compliance {
 
     /// What a hinge turns against (N·m/rad) if no other turns: more or less, since the others follow.
     pub(super) fn stiffness_alone(&self, hinge: usize) -> f64 {
-        f64::from(self.rows[hinge / LANES].scale[hinge % LANES]).powi(2)
+        f64::from(self.scale[hinge / LANES][hinge % LANES]).powi(2)
     }
 
     /// Fills `moments` (N·m) with what angles (rad) press; both end with as many zeros as make the last pack whole.
@@ -218,29 +183,63 @@ impl Compliance {
         moments: &mut Vec<N>,
         scratch: &mut Scratch<N>,
     ) {
-        let Scratch { left, step, last } = scratch;
+        let mut unvaried = std::mem::take(&mut scratch.unvaried);
+        self.press(angles, None, &mut unvaried, scratch);
+        self.press(angles, Some(&unvaried), moments, scratch);
+        self.scale(moments);
+        scratch.unvaried = unvaried;
+    }
+
+    /// The same as if curvature did not vary: what tells the curvature of each face.
+    pub(super) fn unvaried_moments(
+        &self,
+        angles: &[f64],
+        moments: &mut Vec<f64>,
+        scratch: &mut Scratch<f64>,
+    ) {
+        self.press(angles, None, moments, scratch);
+        self.scale(moments);
+    }
+
+    fn scale<N: Number>(&self, moments: &mut [N]) {
+        for (moments, scale) in moments.as_chunks_mut::<LANES>().0.iter_mut().zip(&self.scale) {
+            for lane in 0..LANES {
+                moments[lane] = moments[lane] * N::of(scale[lane]);
+            }
+        }
+    }
+
+    /// All Chebyshev steps: without what varies, then with it, which the moments without tell.
+    fn press<N: Number>(
+        &self,
+        angles: &[N],
+        unvaried: Option<&[N]>,
+        moments: &mut Vec<N>,
+        scratch: &mut Scratch<N>,
+    ) {
+        let Scratch { left, step, last, .. } = scratch;
         for vector in [&mut *moments, &mut *left, &mut *step, &mut *last] {
             vector.resize(angles.len(), N::default());
         }
         for (number, factors) in self.steps.iter().enumerate() {
             let factors = factors.map(N::of);
-            let is_last = number + 1 == self.steps.len();
             std::mem::swap(step, last);
             let last = &*last;
             let tasks = left.par_chunks_mut(TASK).zip(step.par_chunks_mut(TASK));
             let tasks = tasks.zip(moments.par_chunks_mut(TASK)).zip(angles.par_chunks(TASK));
-            let tasks = tasks.zip(self.rows.par_chunks(TASK / LANES)).enumerate();
-            tasks.for_each(|(task, ((((left, step), moments), angles), rows))| {
-                let own = &last[task * TASK..task * TASK + left.len()];
-                let is_first = number == 0;
+            tasks.enumerate().for_each(|(task, (((left, step), moments), angles))| {
+                let own = task * TASK..task * TASK + left.len();
+                let packs = own.start / LANES..own.end / LANES;
+                let varied = unvaried.map(|unvaried| (&self.variation[packs.clone()], unvaried));
                 self.arch.dispatch(Press {
-                    rows,
+                    rows: &self.rows[packs.clone()],
+                    scale: &self.scale[packs],
+                    varied,
                     factors,
-                    is_first,
-                    is_last,
+                    is_first: number == 0,
                     angles,
                     last,
-                    own,
+                    own: &last[own],
                     left,
                     step,
                     moments,
@@ -252,11 +251,12 @@ impl Compliance {
 
 /// One Chebyshev step of some packs.
 struct Press<'a, N> {
-    rows: &'a [Rows],
+    rows: &'a [Rows<4>],
+    scale: &'a [[f32; LANES]],
+    varied: Option<(&'a [Rows<{ variation::WIDTH }>], &'a [N])>,
     factors: [N; 2],
     /// Before the first, nothing was.
     is_first: bool,
-    is_last: bool,
     angles: &'a [N],
     /// The last step of all hinges, and of these.
     last: &'a [N],
@@ -271,7 +271,7 @@ impl<N: Number> WithSimd for Press<'_, N> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { rows, factors: [keep, gain], is_first, is_last, last, .. } = self;
+        let Self { rows, factors: [keep, gain], is_first, last, varied, .. } = self;
         let (angles, own) = (self.angles.as_chunks().0, self.own.as_chunks().0);
         let (left, step) = (self.left.as_chunks_mut().0, self.step.as_chunks_mut().0);
         let moments = self.moments.as_chunks_mut::<LANES>().0;
@@ -280,30 +280,24 @@ impl<N: Number> WithSimd for Press<'_, N> {
             let (left, step): (&mut [N; LANES], &mut [N; LANES]) =
                 (&mut left[pack], &mut step[pack]);
             let moments = &mut moments[pack];
-            let scale = rows.scale.map(N::of);
+            let scale = self.scale[pack].map(N::of);
             if is_first {
+                let mut sums = [N::default(); LANES];
+                if let Some((rows, unvaried)) = varied {
+                    rows[pack].add(unvaried, &mut sums);
+                }
                 for lane in 0..LANES {
-                    left[lane] = scale[lane] * angles[lane];
+                    left[lane] = scale[lane] * angles[lane] + sums[lane];
                     step[lane] = gain * left[lane];
                     moments[lane] = step[lane];
                 }
             } else {
                 let mut sums = *own;
-                for (places, values) in rows.neighbors.iter().zip(&rows.values) {
-                    let others = places.load(last);
-                    for lane in 0..LANES {
-                        sums[lane] += N::of(values[lane]) * others[lane];
-                    }
-                }
+                rows.add(last, &mut sums);
                 for lane in 0..LANES {
                     left[lane] = left[lane] - sums[lane];
                     step[lane] = keep * own[lane] + gain * left[lane];
                     moments[lane] += step[lane];
-                }
-            }
-            if is_last {
-                for lane in 0..LANES {
-                    moments[lane] = moments[lane] * scale[lane];
                 }
             }
         }

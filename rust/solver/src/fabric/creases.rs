@@ -227,7 +227,7 @@ impl Yielding {
         angles.resize(LANES * packs.len(), 0.0);
         let tasks = packs.par_chunks(TASK).zip(angles.par_chunks_mut(TASK * LANES));
         tasks.for_each(|(packs, angles)| arch.dispatch(Look { packs, state, angles }));
-        compliance.moments(angles, moments, steps);
+        compliance.unvaried_moments(angles, moments, steps);
         let moments = &*moments;
         let all = faces.par_iter().zip(creases).with_min_len(TASK);
         let gave_way = all.map(|(face, crease)| {

@@ -15,10 +15,12 @@ mod material;
 mod membrane;
 mod observed;
 mod packs;
+mod rows;
 mod tangent;
 #[cfg(test)]
 mod tests;
 mod triangles;
+mod variation;
 
 pub(crate) use creases::{CREASE, Crease};
 pub(crate) use elements::edges;

@@ -18,8 +18,8 @@ use crate::linear::{Entries, Field, Pairs};
 use crate::state::Coordinates;
 
 /// The part of the bound of hinges that the factored Hessian knows. With none, a napkin of 64 x 64 vertices and 0.1 m takes 6 to
-/// 22 times the iterations; with all, long waves take more than with a fifth.
-const BENT: f64 = 0.2;
+/// 22 times the iterations; with all, long waves take more than with a third.
+const BENT: f64 = 0.3;
 
 /// Packs that one task freezes or turns.
 const TASK: usize = 128;

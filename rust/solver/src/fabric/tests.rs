@@ -134,7 +134,7 @@ fn a_cylinder_stores_the_same_about_any_direction_on_any_mesh() {
     for jitter in [0.0, 0.3] {
         for degrees in [0.0, 30.0, 45.0, 90.0, 135.0] {
             let [coarse, fine] = [20, 40].map(|cells| stored(cells, jitter, degrees));
-            assert!((0.92..0.98).contains(&coarse), "jitter {jitter}, {degrees}°: {coarse}");
+            assert!((0.94..0.99).contains(&coarse), "jitter {jitter}, {degrees}°: {coarse}");
             let lacks = (1.0 - fine) / (1.0 - coarse);
             assert!(lacks < 0.7, "jitter {jitter}, {degrees}°: {coarse}, then {fine}");
         }

@@ -1,7 +1,8 @@
 //! The dense work of one front: elimination and the two sweeps of a solve.
 //!
 //! Columns are eliminated [`ROWS`] at a time. What those before take from them is a product of matrices whose sums stay in
-//! registers; for that, finished columns are kept a second time in tiles of [`ROWS`] rows.
+//! registers; for that, finished columns are kept a second time in tiles of [`ROWS`] rows. Products are added without rounding
+//! in between, on every machine: where no instruction does so, slowly.
 
 use pulp::Simd;
 
@@ -112,7 +113,7 @@ fn subtract_product<S: Simd, const VECTORS: usize>(
             for (sums, &factor) in sums.iter_mut().zip(factors) {
                 let factor = simd.splat_f32s(factor);
                 for (sum, &number) in sums.iter_mut().zip(numbers) {
-                    *sum = simd.add_f32s(*sum, simd.mul_f32s(number, factor));
+                    *sum = simd.mul_add_f32s(number, factor, *sum);
                 }
             }
         }

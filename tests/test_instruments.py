@@ -7,7 +7,18 @@ import numpy as np
 import pytest
 
 import measure
-from instruments import bending, cantilever, cutting, drape, lineup, resting, shear, sheet, tensile
+from instruments import (
+    bending,
+    cantilever,
+    cutting,
+    drape,
+    lineup,
+    resting,
+    shear,
+    sheet,
+    tensile,
+    twisting,
+)
 from instruments.elastica import FLAT_TIP, gamma_of_chord, profile
 from instruments.fabric import Fabric
 from instruments.resting import Load, Restless, Specimen, settle
@@ -123,20 +134,31 @@ def test_d1388_reads_the_bending_stiffness_of_its_fabric(kind, direction):
     assert apart.max() < 0.01
 
 
+@pytest.mark.parametrize("kind", ["grid", "delaunay"])
+@pytest.mark.parametrize(("cells", "near"), [(5, 0.03), (8, 0.01)])
+def test_d1388_reads_the_same_on_a_coarse_mesh(kind, cells, near):
+    assert abs(cantilever.measure(DENIM, "warp", cells, kind).error) < near
+
+
 @pytest.mark.parametrize("preset", ["silk_chiffon", "wool_worsted", "rib_knit"])
 @pytest.mark.parametrize("direction", ["warp", "weft"])
 def test_d1388_reads_fabrics_of_all_kinds_along_their_yarns(preset, direction):
     assert abs(cantilever.measure(Fabric(preset), direction).error) < 0.02
 
 
-def test_a_strip_on_the_bias_bends_with_peirces_mean_if_it_is_narrow(monkeypatch):
+def test_a_strip_on_the_bias_bends_and_twists_as_a_rod_if_it_is_narrow(monkeypatch):
     """Rib bends twice as stiffly along as across; a strip as wide as it is long cannot twist freely."""
     rib, errors = Fabric("rib_knit"), []
     for width in (0.025, 0.003):
         monkeypatch.setattr(cantilever, "WIDTH", width)
         errors.append(cantilever.measure(rib, "bias").error)
+    read_at = gamma_of_chord(FLAT_TIP)
+    assert twisting.chord(1.0, 1.0, read_at) == pytest.approx(FLAT_TIP, abs=0.02)
+    twisted = twisting.chord(rib.number("bend_warp"), rib.number("bend_weft"), read_at)
+    expected = read_at / gamma_of_chord(twisted) - 1.0
     assert errors[0] > 0.03
-    assert abs(errors[1]) < 0.01
+    assert 0.01 < expected < 0.02
+    assert abs(errors[1] - expected) < 0.005
 
 
 def along(read):

@@ -60,6 +60,13 @@ impl Method {
         }
     }
 
+    /// Follows a change of the particles' masses.
+    pub(crate) fn follow_masses(&mut self) {
+        if let Self::Implicit(implicit) = self {
+            implicit.follow_masses();
+        }
+    }
+
     /// The edges that implicit steps can hold at their allowed length, cloth by cloth in the order of their springs, and the
     /// tension (N) that does it now.
     pub(crate) fn held_edges(&self) -> impl Iterator<Item = ([u32; 2], f64)> {

@@ -163,6 +163,11 @@ impl Implicit {
         self.pieces.follow_pins(|particle| system.is_held(particle));
     }
 
+    /// Forgets what depends on the masses of particles.
+    pub(crate) fn follow_masses(&mut self) {
+        self.preconditioner.forget();
+    }
+
     /// Takes the present rest lengths of a cloth's springs; `base` is the number of its first particle.
     pub(crate) fn follow_rest_lengths(&mut self, cloth: &Cloth, base: u32) {
         self.taut.follow_rest_lengths(cloth, base);

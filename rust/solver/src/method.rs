@@ -2,7 +2,6 @@
 
 use crate::cloth::Cloth;
 use crate::contact::{Contacts, Response};
-use crate::fabric::Fabrics;
 use crate::implicit::{Implicit, Memory, Rule};
 use crate::integrator::{Integrator, Scratch, explicit};
 use crate::interrupter::Interrupter;
@@ -85,9 +84,9 @@ impl Method {
     }
 
     /// Takes the present stiffness of the cloths' springs.
-    pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth], fabrics: &Fabrics) {
+    pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth], system: &System) {
         if let Self::Implicit(implicit) = self {
-            implicit.follow_stiffness(cloths, fabrics);
+            implicit.follow_stiffness(cloths, system);
         }
     }
 

@@ -257,4 +257,6 @@ fn tree_of_json(key: &str, json: &serde_json::Value) -> Result<Value> {
 }
 
 #[cfg(test)]
+mod flow_tests;
+#[cfg(test)]
 mod tests;

@@ -95,6 +95,8 @@ def describe(
     frame = obj.boucle.frame_start if at_start else None
     things = [colliders.describe(thing, frame) for thing in met]
     given = values_at_start(obj) if at_start else values(obj)
+    if at_start and obj.boucle.water_object is not None:
+        given["water_level"] = 0.0  # told frame by frame
     around = steady_world(scene) if at_start else world(scene)
     if animation.moves(obj, "boucle.pin_stiffness"):
         given.pop("pin_stiffness")  # told frame by frame

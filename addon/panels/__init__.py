@@ -7,6 +7,7 @@ from . import (
     fabric,
     field_weights,
     forces,
+
     look,
     overlay,
     presets,
@@ -17,6 +18,7 @@ from . import (
     springs,
     tailoring,
     takes,
+    water,
 )
 
 _PARENTS = (
@@ -26,6 +28,7 @@ _PARENTS = (
     shape,
     collisions,
     forces,
+
     solver,
     cache,
 )
@@ -40,6 +43,7 @@ _OTHERS = (
     result,
     tailoring,
     takes,
+    water,
 )
 
 CLASSES = tuple(cls for module in (*_PARENTS, *_OTHERS) for cls in module.CLASSES)

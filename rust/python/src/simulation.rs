@@ -183,6 +183,11 @@ impl Simulation {
         self.with(py, |assembly| Ok(assembly.simulation.set_wind_velocity(wind, to)?))
     }
 
+    fn set_water(&mut self, py: Python<'_>, level: f64, velocity: [f64; 3]) -> PyResult<()> {
+        let current = Vector::from(velocity);
+        self.with(py, |assembly| Ok(assembly.simulation.set_water(level, current)?))
+    }
+
     fn set_gravity(&mut self, py: Python<'_>, gravity: [f64; 3]) -> PyResult<()> {
         self.with(py, |assembly| Ok(assembly.simulation.set_gravity(Vector::from(gravity))?))
     }
@@ -310,6 +315,13 @@ impl Simulation {
         let index = self.cloth(py, cloth)?.0;
         let tension = self.with(py, |assembly| Ok(assembly.simulation.vertex_tension(index)))?;
         buffers::write_numbers(out, &tension, "float32")
+    }
+
+    fn read_wetness(&mut self, py: Python<'_>, cloth: i64, out: &Bound<'_, PyAny>) -> PyResult<()> {
+        let index = self.cloth(py, cloth)?.0;
+        let wetness = self.with(py, |assembly| Ok(assembly.simulation.wetness(index)))?;
+        let wetness: Vec<f32> = wetness.into_iter().map(|part| part as f32).collect();
+        buffers::write_numbers(out, &wetness, "float32")
     }
 
     fn read_contacts(

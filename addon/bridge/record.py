@@ -49,7 +49,7 @@ def of(
     if map_ is not None:
         made["settings"]["cloth.fabric.uv"] = drift.digest(map_)
     if obj.boucle.use_water and obj.boucle.water_object is not None:
-        made["settings"]["water surface"] = obj.boucle.water_object.name
+        made["settings"]["water surface"] = _surface(obj.boucle.water_object)
     strength = pins.constant_strength(obj)
     if strength < 1.0:
         made["settings"]["cloth.pin_strength"] = strength
@@ -58,6 +58,12 @@ def of(
         made["settings"]["cloths met"] = sorted(met)
     made["settings"].update(_keys(obj, scene))
     return made
+
+
+def _surface(surface: bpy.types.Object) -> list[Any]:
+    """The object at which water has its surface, and its height, if nothing moves it."""
+    moves = surface.animation_data or surface.parent or surface.constraints
+    return [surface.name] if moves else [surface.name, round(surface.location.z, 6)]
 
 
 def _keys(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[tuple[str, str]]:

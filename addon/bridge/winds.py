@@ -47,7 +47,9 @@ class Water:
         self._key, self._uid = registry.key_of(cloth), cloth.session_uid
         has_water = any(force["kind"] == "water" for force in description.get("force", []))
         paths = ("boucle.water_level", "boucle.water_velocity")
-        moves = cloth.boucle.water_object is not None or any(animation.moves(cloth, path) for path in paths)
+        moves = cloth.boucle.water_object is not None or any(
+            animation.moves(cloth, path) for path in paths
+        )
         self._moves = has_water and moves
 
     def sample(self, depsgraph: bpy.types.Depsgraph) -> tuple[float, tuple[float, ...]] | None:
@@ -60,7 +62,9 @@ class Water:
         return level_of(obj, settings.water_level, depsgraph), current
 
 
-def level_of(obj: bpy.types.Object, level: float, depsgraph: bpy.types.Depsgraph | None = None) -> float:
+def level_of(
+    obj: bpy.types.Object, level: float, depsgraph: bpy.types.Depsgraph | None = None
+) -> float:
     """The height (m) of the water around a cloth: that of its object, where it has one."""
     surface = obj.boucle.water_object
     if surface is None:

@@ -75,7 +75,9 @@ def record(
     steady = {key: scene[key] for key in scene if key not in ("collider", "force")}
     for force in scene.get("force", []):
         if force["kind"] == "water":
-            settings.update({f"water {key.replace('_', ' ')}": value for key, value in force.items()})
+            settings.update(
+                {f"water {key.replace('_', ' ')}": value for key, value in force.items()}
+            )
         else:
             steady["force"] = [force]
     _flatten(steady, "", settings)

@@ -34,7 +34,11 @@ def wind(values: Values, vertices: Sequence[int] | None) -> dict[str, Any] | Non
         out["gusts"] = {"strength": decimal(values["wind_gusts"]), "period": period, "seed": seed}
     if values.get("wind_turbulence"):
         size, seed = decimal(values["wind_turbulence_size"]), int(values["wind_seed"])
-        out["turbulence"] = {"intensity": decimal(values["wind_turbulence"]), "size": size, "seed": seed}
+        out["turbulence"] = {
+            "intensity": decimal(values["wind_turbulence"]),
+            "size": size,
+            "seed": seed,
+        }
     if values.get("use_wind_shelter"):
         out["shelter"] = True
     if vertices is not None:

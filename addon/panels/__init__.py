@@ -7,7 +7,6 @@ from . import (
     fabric,
     field_weights,
     forces,
-
     look,
     overlay,
     presets,
@@ -28,7 +27,6 @@ _PARENTS = (
     shape,
     collisions,
     forces,
-
     solver,
     cache,
 )

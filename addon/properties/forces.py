@@ -49,7 +49,8 @@ class ForceProperties:
     )  # fmt: skip
     wind_drag: FloatProperty(
         name="Drag Coefficient",
-        description="Force on a face across the wind, as a part of the pressure that stops the air; about 1.2 for a plate",
+        description="Force on a face across the wind, as a part of the pressure of stopped air; about 1.2 for a plate "
+        "(fraction)",
         default=1.0, min=0.0, max=1000.0, soft_max=2.0, precision=3, step=1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
@@ -61,7 +62,7 @@ class ForceProperties:
     )  # fmt: skip
     wind_lift: FloatProperty(
         name="Lift Coefficient",
-        description="Force across the wind on a face that is inclined to it, as a part of the same pressure",
+        description="Force across the wind on a face that is inclined to it, as a part of the same pressure (fraction)",
         default=1.0, min=0.0, max=1000.0, soft_max=2.0, precision=3, step=1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
@@ -79,7 +80,7 @@ class ForceProperties:
     )  # fmt: skip
     wind_turbulence: FloatProperty(
         name="Turbulence",
-        description="Spread of the wind's velocity from place to place, as a part of it; 0.1 to 0.3 near the ground",
+        description="Spread of the wind's velocity from place to place, as a part of it; 0.1 to 0.3 near the ground (fraction)",
         default=0.0, min=0.0, max=10.0, soft_max=1.0, precision=3, step=1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip

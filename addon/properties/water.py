@@ -46,13 +46,13 @@ class WaterProperties:
     )  # fmt: skip
     water_drag: FloatProperty(
         name="Water Drag",
-        description="Drag coefficient of a face across the flow; about 1.2 for a plate",
+        description="Drag coefficient of a face across the flow; about 1.2 for a plate (fraction)",
         default=1.0, min=0.0, max=1000.0, soft_max=2.0, precision=3, step=1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     water_friction: FloatProperty(
         name="Water Friction",
-        description="Friction coefficient of a face along the flow, of both of its sides",
+        description="Friction coefficient of a face along the flow, of both of its sides (fraction)",
         default=0.01, min=0.0, max=1000.0, soft_max=0.1, precision=4, step=0.1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
@@ -70,7 +70,7 @@ class WaterProperties:
     )  # fmt: skip
     wave_angle: FloatProperty(
         name="Wave Direction",
-        description="Where the waves run, from the world's X axis towards its Y axis",
+        description="Where the waves run, from the world's X axis towards its Y axis (degrees)",
         default=0.0, subtype="ANGLE", override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     bulk_density: FloatProperty(
@@ -92,7 +92,7 @@ class WaterProperties:
     )  # fmt: skip
     absorbency: FloatProperty(
         name="Absorbency",
-        description="Mass of the water that the cloth takes up at the most, as a multiple of its own; 0 for none",
+        description="Mass of the water that the cloth takes up at the most, as a multiple of its own; 0 for none (fraction)",
         default=0.0, min=0.0, max=100.0, soft_max=5.0, precision=3, step=1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip

@@ -29,7 +29,12 @@ def by_default(forces: list[dict[str, Any]]) -> Setting:
 
 def falling(drag: float, lift: float | None) -> Finding:
     """A flat sheet of 0.2 kg/m² that falls face-on through air for three seconds."""
-    still: dict[str, Any] = {"kind": "wind", "velocity": [0.0] * 3, "air_density": AIR, "drag_coefficient": drag}
+    still: dict[str, Any] = {
+        "kind": "wind",
+        "velocity": [0.0] * 3,
+        "air_density": AIR,
+        "drag_coefficient": drag,
+    }
     if lift is not None:
         still["lift_coefficient"] = lift
     sheet = Specimen(even_grid(6, 6, 0.1), {"density": 0.2, **SOFT}, by_default([still]))
@@ -61,19 +66,28 @@ def inclined(part: str) -> Finding:
     pressure = 0.5 * AIR * speed**2
     expected = pressure * (drag * sin if part == "drag" else lift * sin * cos)
     shown = slice(None) if part == "drag" else slice(0, 4)  # face-on there is no lift
-    return Curve(angles[shown], found[shown], expected[shown], "angle of attack (°)", "force (N)").worst(WANTED)
+    return Curve(
+        angles[shown], found[shown], expected[shown], "angle of attack (°)", "force (N)"
+    ).worst(WANTED)
 
 
 def face_on() -> Finding:
     """The force of winds of 1 to 30 m/s on a sheet of 1 m² face-on, by pressure along the normal."""
     speeds, step, found = np.array([1.0, 3.0, 10.0, 30.0]), 1e-5, []
     for speed in speeds:
-        wind = {"kind": "wind", "velocity": [0.0, 0.0, speed], "air_density": AIR, "drag_coefficient": 1.17}
+        wind = {
+            "kind": "wind",
+            "velocity": [0.0, 0.0, speed],
+            "air_density": AIR,
+            "drag_coefficient": 1.17,
+        }
         setting = Setting("symplectic_euler", step=step, forces=[wind])
         sheet = Specimen(even_grid(6, 6, 0.2), {"mass_per_vertex": 0.01, **SOFT}, setting)
         sheet.advance(1)
         found.append(float(0.01 / step * sheet.velocities()[:, 2].sum()))
-    curve = Curve(speeds, found, 0.5 * AIR * 1.17 * speeds**2, "speed (m/s)", "force (N)", logarithmic="both")
+    curve = Curve(
+        speeds, found, 0.5 * AIR * 1.17 * speeds**2, "speed (m/s)", "force (N)", logarithmic="both"
+    )
     return curve.worst(WANTED)
 
 
@@ -109,7 +123,7 @@ def drifting() -> Finding:
 
 
 def soaked() -> Finding:
-    """The speed at which a sheet falls through air that has soaked up twice its mass: weight and inertia are of the wet mass."""
+    """The speed at which a sheet falls through air that has soaked up twice its mass, which counts as weight and inertia."""
     cotton = {"bulk_density": 400.0, "absorbency": 2.0, "soak_time": 0.5}
     air = {"kind": "wind", "velocity": [0.0] * 3, "air_density": AIR}
     cloth = {"density": 0.3, "water": cotton, **SOFT}

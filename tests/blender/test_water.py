@@ -5,7 +5,9 @@ def lay_cloth(end, **values):
     """A flat cloth of 1 m, free, at z = 0."""
     import bpy
 
-    bpy.ops.boucle.add_cloth(vertices_x=8, vertices_y=8, size_x=1.0, size_y=1.0, plane="xy", pins=set())
+    bpy.ops.boucle.add_cloth(
+        vertices_x=8, vertices_y=8, size_x=1.0, size_y=1.0, plane="xy", pins=set()
+    )
     obj = bpy.context.object
     obj.boucle.frame_end = end
     for name, value in values.items():
@@ -36,7 +38,7 @@ def float_and_sink():
     # The surface is an object that rises: the cloth goes with it, live and baked; and a changed level is said to be one.
     surface = bpy.data.objects.new("Sea", None)
     bpy.context.scene.collection.objects.link(surface)
-    for frame, height in ((1, 0.0), (48, 0.5)):
+    for frame, height in ((1, 0.0), (48, 0.1)):
         surface.location.z = height
         surface.keyframe_insert("location", frame=frame)
     out["rises"] = end(bulk_density=300.0, water_object=surface)
@@ -53,7 +55,7 @@ def test_cloth_floats_sinks_drifts_soaks_and_rises(blender):
     assert found["sinks"][0] < -0.05
     assert found["drifts"][1] > found["floats"][1] + 0.5
     assert found["soaks"][0] < -0.02
-    assert abs(found["rises"][0] - 0.5) < 0.05
+    assert abs(found["rises"][0] - 0.1) < 0.03
     assert found["drift"] == ["water level"]
     assert all("outdated" not in found[name][2] for name in ("floats", "drifts", "rises"))
 
@@ -73,7 +75,12 @@ def keyed_water():
     scene.frame_set(12)
     baked = shown_positions(obj)
     status = obj.boucle.status
-    return farthest(live, baked), max(baked[2::3]), status, addon("bridge.cache").drift_of(obj, scene, in_full=True)
+    return (
+        farthest(live, baked),
+        max(baked[2::3]),
+        status,
+        addon("bridge.cache").drift_of(obj, scene, in_full=True),
+    )
 
 
 def test_a_keyed_level_is_followed_live_and_baked(blender):

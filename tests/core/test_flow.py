@@ -55,7 +55,12 @@ def of(name, **values):
     cloth = {"name": name, "collision": {"self": False}}
     head = {"frames": [1, 5], "fps": 24.0, "gravity": [0.0, 0.0, -9.81]}
     solver = {"integrator": "bdf2"}
-    return {"scene": head, "cloth": [cloth], "solver": solver, "force": [one for one in forces if one]}
+    return {
+        "scene": head,
+        "cloth": [cloth],
+        "solver": solver,
+        "force": [one for one in forces if one],
+    }
 
 
 def test_cloths_that_meet_are_in_one_water():
@@ -65,11 +70,16 @@ def test_cloths_that_meet_are_in_one_water():
     scenes = [of("A"), of("B", water_level=0.6)]
     found = joint.groups(scenes, lambda _one, _other: True, dict.fromkeys("AB", ""))
     assert found.together == [["A"], ["B"]]
-    assert found.apart == ['"A" and "B" are baked one after the other and do not collide: their waters differ']
+    assert found.apart == [
+        '"A" and "B" are baked one after the other and do not collide: their waters differ'
+    ]
 
 
 def test_a_record_tells_wind_and_water_apart():
-    records = [drift.record(of("A", **values), 4, "") for values in ({}, {"water_level": 0.6}, {"wind_drag": 2.0})]
+    records = [
+        drift.record(of("A", **values), 4, "")
+        for values in ({}, {"water_level": 0.6}, {"wind_drag": 2.0})
+    ]
     json.dumps(records)
     assert drift.differences(records[0], records[1]) == ["water level"]
     assert drift.differences(records[0], records[2]) == ["drag coefficient"]

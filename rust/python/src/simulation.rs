@@ -306,22 +306,17 @@ impl Simulation {
     }
 
     fn read_strain(&mut self, py: Python<'_>, cloth: i64, out: &Bound<'_, PyAny>) -> PyResult<()> {
-        let index = self.cloth(py, cloth)?.0;
-        let strain = self.with(py, |assembly| Ok(assembly.simulation.vertex_strain(index)))?;
-        buffers::write_numbers(out, &strain, "float32")
+        self.read_numbers(py, cloth, out, boucle_solver::Simulation::vertex_strain)
     }
 
     fn read_tension(&mut self, py: Python<'_>, cloth: i64, out: &Bound<'_, PyAny>) -> PyResult<()> {
-        let index = self.cloth(py, cloth)?.0;
-        let tension = self.with(py, |assembly| Ok(assembly.simulation.vertex_tension(index)))?;
-        buffers::write_numbers(out, &tension, "float32")
+        self.read_numbers(py, cloth, out, boucle_solver::Simulation::vertex_tension)
     }
 
     fn read_wetness(&mut self, py: Python<'_>, cloth: i64, out: &Bound<'_, PyAny>) -> PyResult<()> {
-        let index = self.cloth(py, cloth)?.0;
-        let wetness = self.with(py, |assembly| Ok(assembly.simulation.wetness(index)))?;
-        let wetness: Vec<f32> = wetness.into_iter().map(|part| part as f32).collect();
-        buffers::write_numbers(out, &wetness, "float32")
+        self.read_numbers(py, cloth, out, |simulation, cloth| {
+            simulation.wetness(cloth).into_iter().map(|part| part as f32).collect()
+        })
     }
 
     fn read_contacts(
@@ -330,9 +325,7 @@ impl Simulation {
         cloth: i64,
         out: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        let index = self.cloth(py, cloth)?.0;
-        let forces = self.with(py, |assembly| Ok(assembly.simulation.vertex_contacts(index)))?;
-        buffers::write_numbers(out, &forces, "float32")
+        self.read_numbers(py, cloth, out, boucle_solver::Simulation::vertex_contacts)
     }
 
     fn read_intersections(
@@ -341,10 +334,7 @@ impl Simulation {
         cloth: i64,
         out: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        let index = self.cloth(py, cloth)?.0;
-        let counts =
-            self.with(py, |assembly| Ok(assembly.simulation.vertex_intersections(index)))?;
-        buffers::write_numbers(out, &counts, "float32")
+        self.read_numbers(py, cloth, out, boucle_solver::Simulation::vertex_intersections)
     }
 
     fn overstretched_edges(

@@ -522,7 +522,9 @@ fn fields_are_read_with_their_values_and_defaults() {
     };
     let (axis, shape) = ([1.0, 0.0, 0.0].into(), boucle_solver::FieldShape::Plane);
     assert_eq!(field, Field { axis, shape, falloff, ..plain });
-    for (kind, _) in force::ForceKind::WORDS.iter().filter(|(word, _)| !["wind", "water"].contains(word)) {
+    for (kind, _) in
+        force::ForceKind::WORDS.iter().filter(|(word, _)| !["wind", "water"].contains(word))
+    {
         let scene = with_force(&format!("kind = \"{kind}\"\nstrength = 1")).expect(kind);
         assert!(scene.force[1].field("").expect(kind).is_some());
     }

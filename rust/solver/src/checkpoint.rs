@@ -9,6 +9,7 @@
 //! | water u64 | level, current and drift, f64 | wetness of each particle that soaks, f64
 //! | points of colliders u64 | their positions, f64, point by point
 //! | the same where they are to be next; no points if they stay
+//! | numbers of tears u64 | those, f64: of each cloth how many edges are torn, those, how many seams are undone, those
 //! | numbers of the shape u64 | those, f64: rest lengths, pressures, welded seams, creases
 //! | implicit integrators only: edges u64 | substeps u32 | step f64 | error f64
 //! |     positions and velocities before | tension f64 of each edge
@@ -53,6 +54,8 @@ pub(crate) struct Checkpoint {
     pub(crate) water: Vec<f64>,
     /// Where the points of colliders are (m), and where they are to be at the end of the next frame.
     pub(crate) colliders: [Vec<Vector>; 2],
+    /// Of each cloth the edges that are torn, in that order, and the seams that are undone.
+    pub(crate) tears: Vec<f64>,
     /// Rest lengths, pressures, welded seams and creases.
     pub(crate) shape: Vec<f64>,
     pub(crate) memory: Option<Memory>,
@@ -96,6 +99,7 @@ impl Checkpoint {
         for points in [from, to] {
             write(points.len(), &mut points.iter().flatten().copied());
         }
+        write(self.tears.len(), &mut self.tears.iter().copied());
         write(self.shape.len(), &mut self.shape.iter().copied());
     }
 
@@ -165,7 +169,7 @@ impl Checkpoint {
         let water = reader.numbers()?;
         let [from, to] = [reader.vectors()?, reader.vectors()?];
         let to = if to.is_empty() { from.clone() } else { to };
-        let shape = reader.numbers()?;
+        let [tears, shape] = [reader.numbers()?, reader.numbers()?];
         let memory =
             if reader.0.is_empty() { None } else { Some(Self::read_memory(reader, count)?) };
         reader.0.is_empty().then_some(Self {
@@ -181,6 +185,7 @@ impl Checkpoint {
             fields,
             water,
             colliders: [from, to],
+            tears,
             shape,
             memory,
         })
@@ -281,7 +286,7 @@ mod tests {
         let points = [0.0, 0.5].map(|z| vec![Vector::new(1.5, -2.0, z)]);
         let (colliders, memory) = (points, Some(memory));
         let fields = vec![Field::new(FieldKind::Drag, 0.5)];
-        let shape = vec![1.0, 0.25];
+        let (tears, shape) = (vec![1.0, 7.0, 0.0], vec![1.0, 0.25]);
         Checkpoint {
             digest: 7,
             frame: -3,
@@ -295,6 +300,7 @@ mod tests {
             fields,
             water: vec![0.5, 1.0, 0.25],
             colliders,
+            tears,
             shape,
             memory,
         }

@@ -10,6 +10,7 @@ use crate::force::{Bulk, Pressure};
 use crate::law::{Spring, springs_of_mesh};
 use crate::material::{PinMaterial, SpringMaterial, within_one};
 use crate::tailoring::Tailoring;
+use crate::tear::Tear;
 
 /// Farthest coordinate (m) accepted: beyond it differences lose the precision that springs need.
 pub(crate) const FARTHEST: f64 = 1e6;
@@ -57,6 +58,10 @@ pub struct Cloth {
     pub pressure: Option<Pressure>,
     /// How it meets water.
     pub bulk: Bulk,
+    /// When it tears; never if `None`.
+    pub tear: Option<Tear>,
+    /// Of each vertex of a cloth that is torn, the vertex as given that it is a piece of; empty as long as it is whole.
+    pub origins: Vec<u32>,
 }
 
 /// A cloth and the number of its first particle.
@@ -112,6 +117,8 @@ impl Cloth {
             tailoring: Tailoring::default(),
             pressure: None,
             bulk: Bulk::default(),
+            tear: None,
+            origins: Vec::new(),
         };
         cloth.check()?;
         Ok(cloth)
@@ -141,6 +148,16 @@ impl Cloth {
         }
         let springs = edges(&self.mesh, &self.positions);
         Ok(Self { springs, fabric: Some(fabric), ..self })
+    }
+
+    /// The present vertices, in order, that some vertices as given are or have become.
+    pub(crate) fn pieces_of(&self, vertices: &[u32]) -> impl Iterator<Item = u32> {
+        let mut is_chosen = vec![false; self.positions.len()];
+        vertices.iter().for_each(|&vertex| is_chosen[vertex as usize] = true);
+        (0..self.positions.len() as u32).filter(move |&vertex| {
+            let origin = self.origins.get(vertex as usize).copied().unwrap_or(vertex);
+            is_chosen[origin as usize]
+        })
     }
 
     /// Area (m²) of its faces at rest.
@@ -175,6 +192,7 @@ impl Cloth {
             pressure.check(&self.name, self.positions.len())?;
         }
         self.bulk.check(&self.name)?;
+        self.tear.as_ref().map_or(Ok(()), |tear| tear.check(self))?;
         if self.bulk.is_hull == Some(true) && facing(&self.mesh, self.rest()) == 0.0 {
             let reason =
                 "hull is true, but its mesh has a border; accepted: a closed mesh, or false";

@@ -28,6 +28,7 @@ pub(crate) fn digest(
             format!("{:?} {:?} {:?}", cloth.tailoring, cloth.pressure, cloth.bulk).as_bytes(),
         );
         hasher.update(format!("{:?} {:?}", cloth.pin_weights, cloth.pin_material).as_bytes());
+        hasher.update(format!("{:?}", cloth.tear).as_bytes());
         for spring in &cloth.springs {
             let [a, b] = spring.ends;
             for part in [a, b, spring.kind as u32] {

@@ -47,6 +47,7 @@ mod state;
 mod step;
 mod system;
 mod tailoring;
+mod tear;
 
 pub use certificate::Certificate;
 pub use cloth::{Cloth, Mass, mesh_of};
@@ -66,3 +67,4 @@ pub use overstretch::OverstretchedEdge;
 pub use settings::{IntegratorKind, LinearSolver, MOST_SUBSTEPS, Settings, StepSize};
 pub use simulation::Simulation;
 pub use tailoring::{SHRINK, Sewing, Tailoring};
+pub use tear::{Opening, Tear};

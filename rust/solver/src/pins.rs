@@ -181,6 +181,11 @@ impl Pins {
         (self.all.iter().map(|pin| pin.held).collect(), self.stiffness.clone())
     }
 
+    /// The particles of all pins, in the order of [`Self::held`].
+    pub(crate) fn all(&self) -> impl Iterator<Item = u32> {
+        self.all.iter().map(|pin| pin.particle)
+    }
+
     /// Whether what [`Self::held`] gave is of these pins.
     pub(crate) fn fit(&self, held: &[Held], stiffness: &[f64]) -> bool {
         held.len() == self.all.len() && stiffness.len() == self.stiffness.len()

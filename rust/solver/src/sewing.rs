@@ -67,6 +67,11 @@ impl Seams {
         self.seams.is_empty()
     }
 
+    /// The particles that each seam joins.
+    pub(crate) fn ends(&self) -> impl Iterator<Item = [u32; 2]> {
+        self.seams.iter().map(|seam| seam.ends)
+    }
+
     /// Which seams are welded.
     pub(crate) fn welded(&self) -> impl Iterator<Item = bool> {
         self.seams.iter().map(|seam| seam.is_welded)

@@ -1,5 +1,6 @@
 //! A simulation as the outside holds it: cloths that move frame by frame.
 
+mod carrying;
 mod certifying;
 mod contact;
 mod forces;
@@ -8,8 +9,10 @@ mod interrupt;
 mod placing;
 mod plan;
 mod saved_shape;
+mod saved_tears;
 mod saving;
 mod shape;
+mod tearing;
 mod tension;
 
 use std::fmt;
@@ -46,6 +49,7 @@ use crate::stability::Spectrum;
 use crate::state::State;
 use crate::step::Step;
 use crate::system::System;
+use crate::tear::Split;
 
 /// Cloths in motion, at the end of a frame.
 pub struct Simulation {
@@ -64,6 +68,10 @@ pub struct Simulation {
     /// Of the cloths whose rest lengths change.
     rests: Vec<Option<Box<Rest>>>,
     seams: Seams,
+    /// Of the cloths that tear.
+    splits: Vec<Option<Box<Split>>>,
+    /// As they were given.
+    winds: Vec<Wind>,
     state: State,
     /// The state at the start of a frame, to fall back on.
     good: State,
@@ -131,17 +139,31 @@ impl Simulation {
         }
         winds.iter().try_for_each(|wind| wind.check(&cloths))?;
         let digest = digest(&cloths, &colliders, &winds, &settings);
-        let bases: Vec<u32> = placed(&cloths).map(|(_, base)| base).collect();
-        let positions: Vec<Vector> =
-            cloths.iter().flat_map(|cloth| cloth.positions.iter().copied()).collect();
-        let state = State::at_rest(&positions);
         let threads = ThreadPoolBuilder::new()
             .num_threads(settings.threads)
             .thread_name(|index| format!("boucle-{index}"))
             .build()
             .map_err(|_| Error::Threads(settings.threads))?;
-        let system = System::new(&cloths, winds, settings.water.clone(), settings.gravity);
-        let interrupter = Interrupter::default();
+        let split =
+            |cloth: &Cloth| cloth.tear.as_ref().map(|_| Box::new(Split::new(cloth.clone())));
+        let splits = cloths.iter().map(split).collect();
+        let pool = (Arc::new(threads), Interrupter::default());
+        let made = Self::assemble(cloths, (colliders, winds), settings, pool)?;
+        Ok(Self { digest, splits, ..made })
+    }
+
+    /// A simulation of what has been checked.
+    fn assemble(
+        cloths: Vec<Cloth>,
+        (colliders, winds): (Vec<Collider>, Vec<Wind>),
+        settings: Settings,
+        (threads, interrupter): (Arc<ThreadPool>, Interrupter),
+    ) -> Result<Self> {
+        let bases: Vec<u32> = placed(&cloths).map(|(_, base)| base).collect();
+        let positions: Vec<Vector> =
+            cloths.iter().flat_map(|cloth| cloth.positions.iter().copied()).collect();
+        let state = State::at_rest(&positions);
+        let system = System::new(&cloths, winds.clone(), settings.water.clone(), settings.gravity);
         let mut simulation = Self {
             pins: Pins::new(&cloths, &state),
             grab: Grab::default(),
@@ -152,6 +174,8 @@ impl Simulation {
             limits: Vec::new(),
             rests: cloths.iter().map(|_| None).collect(),
             seams: Seams::new(&cloths),
+            splits: cloths.iter().map(|_| None).collect(),
+            winds,
             good: state.clone(),
             good_memory: None,
             good_creases: Vec::new(),
@@ -169,9 +193,9 @@ impl Simulation {
             colliders,
             bases,
             settings,
-            digest,
+            digest: 0,
             state,
-            threads: Arc::new(threads),
+            threads,
             interrupter,
         };
         simulation.follow_holds();
@@ -240,6 +264,8 @@ impl Simulation {
         self.end_holds();
         self.contacts.end_frame();
         self.clipped = self.contacts.take_clipped();
+        self.iterations_taken = self.method.take_iterations();
+        self.tear()?;
         self.intersect();
         self.substeps_taken = substeps;
         let accuracy = self.accuracy_now();
@@ -247,7 +273,6 @@ impl Simulation {
             memory.substeps = accuracy.after(substeps, memory.mean_error(substeps));
             memory.error = 0.0;
         }
-        self.iterations_taken = self.method.take_iterations();
         Ok(self.certificate())
     }
 

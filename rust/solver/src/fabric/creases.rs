@@ -206,6 +206,11 @@ impl Yielding {
         self.faces.is_empty()
     }
 
+    /// The numbers of the faces, in the order of their creases.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = usize> {
+        self.faces.iter().map(|face| face.number as usize)
+    }
+
     /// Takes up which faces are rigid.
     pub(super) fn follow_pins(&mut self, is_rigid: impl Fn(usize) -> bool) {
         for face in &mut self.faces {

@@ -208,6 +208,19 @@ impl Fabrics {
         &self.yielding.creases
     }
 
+    /// The corners of each face that may yield, in the order of its creases.
+    pub(crate) fn creased_faces(&self) -> impl Iterator<Item = [u32; 3]> {
+        self.yielding.numbers().map(|number| self.triangles[number].corners)
+    }
+
+    /// The edge of each hinge of a cloth.
+    pub(crate) fn hinge_edges(&self, cloth: usize) -> impl Iterator<Item = [u32; 2]> {
+        self.hinges[self.parts[cloth].hinges.clone()].iter().map(|one| {
+            let [a, b, _, _] = one.corners;
+            [a.min(b), a.max(b)]
+        })
+    }
+
     /// Takes up what [`Self::creases`] gave.
     pub(crate) fn put_creases(&mut self, creases: &[Crease]) {
         self.yielding.creases.copy_from_slice(creases);
@@ -229,6 +242,28 @@ impl Fabrics {
             let frame = one.frame(|corner| state.position.get(corner as usize));
             let stress = self.laws[one.law as usize].strained(frame).stress;
             (one.corners, membrane::largest(stress) * (2.0 * one.area).sqrt())
+        })
+    }
+
+    /// The sides of each triangle of a cloth, the smaller particle first, and the stress along them over a width as that of its
+    /// sides (N).
+    pub(crate) fn side_tensions<'a>(
+        &'a self,
+        cloth: usize,
+        state: &'a State,
+    ) -> impl Iterator<Item = ([u32; 2], f64)> + 'a {
+        self.parts[cloth].triangles.clone().flat_map(|number| {
+            let one = &self.triangles[number];
+            let frame = one.frame(|corner| state.position.get(corner as usize));
+            let [ww, ff, wf] = self.laws[one.law as usize].strained(frame).stress;
+            let width = (2.0 * one.area).sqrt();
+            let (flat, corners) = (self.faces[number].flat, one.corners);
+            [(0, 1), (1, 2), (2, 0)].map(|(i, j)| {
+                let [w, f] = [0, 1].map(|axis| flat[j][axis] - flat[i][axis]);
+                let along = (ww * w * w + ff * f * f + 2.0 * wf * w * f) / (w * w + f * f);
+                let [a, b] = [corners[i], corners[j]];
+                ([a.min(b), a.max(b)], along * width)
+            })
         })
     }
 

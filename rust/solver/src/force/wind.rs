@@ -165,8 +165,8 @@ pub(super) fn vertex_mask(region: &Region, cloths: &[Cloth]) -> Option<Vec<bool>
         let base = mask.len();
         let is_of = of.is_none_or(|of| of == number);
         mask.resize(base + cloth.positions.len(), is_of && vertices.is_none());
-        for &vertex in vertices.into_iter().flatten().filter(|_| is_of) {
-            mask[base + vertex as usize] = true;
+        if let Some(vertices) = vertices.filter(|_| is_of) {
+            cloth.pieces_of(vertices).for_each(|vertex| mask[base + vertex as usize] = true);
         }
     }
     Some(mask)

@@ -12,10 +12,10 @@ use crate::tailoring::CLOSED;
 /// The numbers of a checkpoint, told apart.
 pub(super) struct SavedShape {
     /// Of each cloth, as the frame begins and as it ends.
-    lengths: Vec<[Vec<f64>; 2]>,
+    pub(super) lengths: Vec<[Vec<f64>; 2]>,
     levels: Vec<[Level; 2]>,
-    welded: Vec<bool>,
-    creases: Vec<Crease>,
+    pub(super) welded: Vec<bool>,
+    pub(super) creases: Vec<Crease>,
 }
 
 impl Simulation {
@@ -34,6 +34,23 @@ impl Simulation {
         let creases = self.system.fabrics.creases().iter();
         numbers.extend(creases.flat_map(|crease| crease.to_numbers()));
         numbers
+    }
+
+    /// The present shape.
+    pub(super) fn saved_shape(&self) -> SavedShape {
+        SavedShape {
+            lengths: self
+                .rests
+                .iter()
+                .map(|rest| {
+                    rest.as_ref()
+                        .map_or_else(Default::default, |rest| rest.both().map(<[f64]>::to_vec))
+                })
+                .collect(),
+            levels: self.system.air.pressures.levels().collect(),
+            welded: self.seams.welded().collect(),
+            creases: self.system.fabrics.creases().to_vec(),
+        }
     }
 
     /// Tells the numbers of a checkpoint apart; nothing if they are not of these cloths.
@@ -93,7 +110,7 @@ impl Simulation {
 }
 
 /// What is left of the numbers.
-struct Numbers<'a>(&'a [f64]);
+pub(super) struct Numbers<'a>(pub(super) &'a [f64]);
 
 impl<'a> Numbers<'a> {
     fn take(&mut self, count: usize) -> Option<&'a [f64]> {
@@ -103,7 +120,7 @@ impl<'a> Numbers<'a> {
     }
 
     /// A count, and so many numbers.
-    fn counted(&mut self) -> Option<&'a [f64]> {
+    pub(super) fn counted(&mut self) -> Option<&'a [f64]> {
         let count = self.take(1)?[0];
         self.take(count as usize)
     }

@@ -1,6 +1,7 @@
 //! The state of a simulation as bytes, and back.
 
 use super::Simulation;
+use super::saved_shape::SavedShape;
 use crate::checkpoint::Checkpoint;
 use crate::error::{Error, Result};
 use crate::goals::Goal;
@@ -9,8 +10,13 @@ impl Simulation {
     /// The whole state as bytes, with all that it was told for the next frame.
     #[must_use]
     pub fn checkpoint(&self) -> Vec<u8> {
+        self.saved().to_bytes()
+    }
+
+    /// The same before it is bytes.
+    pub(super) fn saved(&self) -> Checkpoint {
         let (pins, pin_stiffness) = self.pins.held();
-        let checkpoint = Checkpoint {
+        Checkpoint {
             digest: self.digest,
             frame: self.frame,
             substeps: self.substeps_taken,
@@ -25,8 +31,8 @@ impl Simulation {
             pins,
             pin_stiffness,
             grab: self.grab.clone(),
-        };
-        checkpoint.to_bytes()
+            tears: self.tears(),
+        }
     }
 
     /// Takes up the state of a checkpoint; what follows is bit-equal to never having stopped.
@@ -40,11 +46,31 @@ impl Simulation {
                 "is of another scene or other settings; accepted: the one that it was made from",
             ));
         }
-        let damaged = Error::BadCheckpoint("is damaged; accepted: a whole one");
+        let damaged = || Error::BadCheckpoint("is damaged; accepted: a whole one");
+        let (before, undo) = (self.tears(), self.saved());
+        if self.tear_alike(&checkpoint.tears).is_none() {
+            return Err(damaged());
+        }
+        let taken = self.take_if_whole(checkpoint, damaged());
+        if taken.is_err() {
+            // What was is whole.
+            let _ = self.tear_alike(&before);
+            let _ = self.take_if_whole(undo, damaged());
+        }
+        taken
+    }
+
+    fn take_if_whole(&mut self, checkpoint: Checkpoint, damaged: Error) -> Result<()> {
         let shape = self.read_shape(&checkpoint.shape).ok_or_else(|| damaged.clone())?;
         if !self.fits(&checkpoint) {
             return Err(damaged);
         }
+        self.take(checkpoint, shape);
+        Ok(())
+    }
+
+    /// Takes up a checkpoint that fits.
+    pub(super) fn take(&mut self, checkpoint: Checkpoint, shape: SavedShape) {
         self.pins.restore(&checkpoint.pins, &checkpoint.pin_stiffness);
         if let (Some(memory), Some(restored)) = (self.method.memory_mut(), checkpoint.memory) {
             *memory = restored;
@@ -69,7 +95,6 @@ impl Simulation {
         self.take_shape(shape);
         self.method.follow_pins(&self.system);
         self.intersect();
-        Ok(())
     }
 
     /// Whether a checkpoint holds as much of everything as there is here; its shape is looked at when it is read.

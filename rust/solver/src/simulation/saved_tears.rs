@@ -1,0 +1,49 @@
+//! What is torn, as numbers of a checkpoint: of each cloth how many edges are torn, those in the order in which they tore, how many
+//! seams are undone, and those.
+
+use super::Simulation;
+use super::saved_shape::Numbers;
+use crate::tear::Split;
+
+impl Simulation {
+    pub(super) fn tears(&self) -> Vec<f64> {
+        let none: [&[u32]; 2] = [&[], &[]];
+        let histories =
+            self.splits.iter().map(|split| split.as_deref().map_or(none, Split::history));
+        let lists = histories.flatten().map(|list| list.iter().map(|&number| f64::from(number)));
+        lists.flat_map(|list| std::iter::once(list.len() as f64).chain(list)).collect()
+    }
+
+    /// Tears the cloths as such numbers say, in the place of how they are torn now; the rest of the state is then to be restored.
+    /// None, and nothing is changed, if the numbers are not of these cloths.
+    pub(super) fn tear_alike(&mut self, tears: &[f64]) -> Option<()> {
+        if tears == self.tears() {
+            return Some(());
+        }
+        let mut numbers = Numbers(tears);
+        let mut splits = Vec::new();
+        for split in &self.splits {
+            let [torn, undone] = [numbers.counted()?, numbers.counted()?];
+            let Some(own) = split else {
+                splits.push(None);
+                (torn.is_empty() && undone.is_empty()).then_some(())?;
+                continue;
+            };
+            let [torn, undone] =
+                [torn, undone].map(|list| list.iter().map(|n| *n as u32).collect::<Vec<_>>());
+            own.has([&torn, &undone]).then_some(())?;
+            let mut split = Split::new(own.given().clone());
+            torn.into_iter().for_each(|edge| drop(split.tear(edge)));
+            undone.into_iter().for_each(|seam| split.undo(seam));
+            splits.push(Some(Box::new(split)));
+        }
+        numbers.0.is_empty().then_some(())?;
+        let before = std::mem::replace(&mut self.splits, splits);
+        let (cloths, from) = self.pieces();
+        let became = self.become_cloths(cloths, &from);
+        if became.is_err() {
+            self.splits = before;
+        }
+        became.ok()
+    }
+}

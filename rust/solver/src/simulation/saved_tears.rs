@@ -33,7 +33,9 @@ impl Simulation {
                 [torn, undone].map(|list| list.iter().map(|n| *n as u32).collect::<Vec<_>>());
             own.has([&torn, &undone]).then_some(())?;
             let mut split = Split::new(own.given().clone());
-            torn.into_iter().for_each(|edge| drop(split.tear(edge)));
+            for edge in torn {
+                split.tear(edge);
+            }
             undone.into_iter().for_each(|seam| split.undo(seam));
             splits.push(Some(Box::new(split)));
         }

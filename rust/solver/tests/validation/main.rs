@@ -41,6 +41,7 @@ mod soft_pins;
 mod stability;
 mod statics;
 mod swing;
+mod tearing;
 mod told;
 mod water;
 mod weather;

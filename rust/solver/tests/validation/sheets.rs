@@ -82,6 +82,8 @@ pub(crate) fn network(
         tailoring: Tailoring::default(),
         pressure: None,
         bulk: Bulk::default(),
+        tear: None,
+        origins: Vec::new(),
     }
 }
 

@@ -1,0 +1,226 @@
+//! Cloth that tears: at the load that it bears, along the edge that is weakest, and what the pieces do.
+
+use boucle_geometry::Vector;
+use boucle_solver::{
+    Cloth, Collision, Fabric, Flow, IntegratorKind, Mass, Opening, Settings, Sewing, Simulation,
+    SpringMaterial, Tear, Warp, Wind, WindLaw,
+};
+
+use crate::sheets::{grid_mesh, in_wind, material, run, sheet};
+
+const COLUMNS: u32 = 7;
+const ROWS: u32 = 13;
+const SPACING: f64 = 0.05;
+/// kg
+const EACH: f64 = 0.002;
+
+/// A sheet that hangs from its top row, weak across the middle. Its rows number upward.
+fn hanging(mass: &Mass, material: SpringMaterial, tear: Tear) -> Cloth {
+    let top: Vec<u32> = (COLUMNS * (ROWS - 1)..COLUMNS * ROWS).collect();
+    let cloth = sheet([COLUMNS, ROWS], SPACING, mass, material, &top);
+    let upright = |x: &Vector| Vector::new(x.x, 0.0, x.y);
+    let positions = cloth.positions.iter().map(upright).collect();
+    Cloth { positions, tear: Some(tear), ..cloth }
+}
+
+fn weak_at(row: u32, strength: f64) -> Vec<f64> {
+    (0..COLUMNS * ROWS).map(|i| if i / COLUMNS == row { strength } else { 1.0 }).collect()
+}
+
+fn settings(integrator: IntegratorKind) -> Settings {
+    Settings { integrator, threads: 1, perturbation: 0.0, ..Settings::default() }
+}
+
+/// Gravity grows until the sheet tears; returns how large it is then (m/s²).
+fn load_until_torn(simulation: &mut Simulation, growth: f64) -> f64 {
+    for frame in 1..2000 {
+        let g = growth * f64::from(frame);
+        simulation.set_gravity(Vector::z() * -g).expect("accepted");
+        run(simulation, 1);
+        if !simulation.torn_edges(0).is_empty() {
+            return g;
+        }
+    }
+    panic!("it never tore");
+}
+
+/// Each column bears its own weight: the edge above row r pulls with m g (r + 1). That above the weak row is the first to break.
+#[test]
+fn a_sheet_under_a_growing_load_tears_at_its_force_along_its_weakest_row() {
+    let (force, weak, row) = (10.0, 0.15, 6);
+    for integrator in [IntegratorKind::ImplicitEuler, IntegratorKind::SymplecticEuler] {
+        let damped = SpringMaterial { air_damping: 0.02, ..material([4000.0, 0.0, 0.0]) };
+        let tear = Tear { force: Some(force), strength: weak_at(row, weak), ..Tear::default() };
+        let mut simulation = in_wind(
+            hanging(&Mass::PerVertex(EACH), damped, tear),
+            Vec::new(),
+            settings(integrator),
+        );
+        let g = load_until_torn(&mut simulation, 0.5);
+        let expected = weak * force / (EACH * f64::from(row + 1));
+        assert!((g / expected - 1.0).abs() < 0.03, "{integrator:?}: {g} beside {expected}");
+        run(&mut simulation, 3);
+        let torn = simulation.torn_edges(0);
+        let is_across = |[a, b]: &[u32; 2]| a / COLUMNS == row && b / COLUMNS == row;
+        assert_eq!(torn.len(), COLUMNS as usize - 1, "{torn:?}");
+        assert!(torn.iter().all(is_across), "{torn:?}");
+    }
+}
+
+/// The membrane stress at the weak row is what hangs below it, over the width.
+#[test]
+fn fabric_under_a_growing_load_tears_at_its_force_along_its_weakest_row() {
+    let (force, weak, row) = (10.0, 0.15, 6);
+    let density = 0.8;
+    let fabric = Fabric {
+        stretch: [4000.0; 2],
+        shear: 1000.0,
+        warp: Warp::Along(Vector::z()),
+        ..Fabric::default()
+    };
+    let damped = SpringMaterial { air_damping: 0.02, ..material([0.0; 3]) };
+    let tear = Tear { force: Some(force), strength: weak_at(row, weak), ..Tear::default() };
+    let cloth = hanging(&Mass::Density(density), damped, tear).of_fabric(fabric).expect("a fabric");
+    let mut simulation = in_wind(cloth, Vec::new(), settings(IntegratorKind::ImplicitEuler));
+    let g = load_until_torn(&mut simulation, 0.5);
+    // The triangles above a row carry all below and half of its cells; the width of one is that of a cell.
+    let below = density * SPACING * (f64::from(row) + 0.5);
+    let expected = weak * force / (below * SPACING);
+    assert!((g / expected - 1.0).abs() < 0.03, "{g} beside {expected}");
+    run(&mut simulation, 3);
+    let torn = simulation.torn_edges(0);
+    assert!(torn.iter().all(|[a, b]| a / COLUMNS == row && b / COLUMNS == row), "{torn:?}");
+    assert_eq!(torn.len(), COLUMNS as usize - 1);
+}
+
+/// What has torn off falls as anything falls.
+#[test]
+fn the_lower_piece_falls_freely_and_nothing_is_lost() {
+    let row = 6;
+    let openings = vec![Opening {
+        frame: 3,
+        pairs: (0..COLUMNS - 1).map(|c| row * COLUMNS + c).map(|a| [a, a + 1]).collect(),
+    }];
+    let tear = Tear { openings, ..Tear::default() };
+    let cloth = hanging(&Mass::PerVertex(EACH), material([400.0, 100.0, 5.0]), tear);
+    let first = settings(IntegratorKind::ImplicitEuler).first_frame;
+    let mut simulation = in_wind(cloth, Vec::new(), settings(IntegratorKind::ImplicitEuler));
+    run(&mut simulation, usize::try_from(3 - first).expect("later"));
+    assert_eq!(simulation.torn_edges(0).len(), COLUMNS as usize - 1);
+    assert_eq!(simulation.positions(0).len(), (COLUMNS * ROWS + COLUMNS) as usize);
+    let middle = |simulation: &Simulation| {
+        let (positions, cloth) = (simulation.positions(0), simulation.cloth(0));
+        let lower = |i: &usize| simulation.origins(0)[*i] / COLUMNS < row;
+        let all: Vec<usize> = (0..positions.len()).filter(lower).collect();
+        let mass: f64 = all.iter().map(|&i| cloth.masses[i]).sum();
+        all.iter().map(|&i| cloth.masses[i] * positions[i].z).sum::<f64>() / mass
+    };
+    let before = middle(&simulation);
+    run(&mut simulation, 24);
+    let fallen = before - middle(&simulation);
+    // It was swinging a little as it tore.
+    assert!((4.0..5.5).contains(&fallen), "{fallen}");
+    let mass: f64 = simulation.cloth(0).masses.iter().sum();
+    assert!((mass - EACH * f64::from(COLUMNS * ROWS)).abs() < 1e-12);
+    let faces = simulation.cloth(0).mesh.face_count();
+    assert_eq!(faces, grid_mesh(COLUMNS, ROWS).face_count());
+}
+
+fn storm() -> Wind {
+    let velocity = Vector::new(14.0, 9.0, 0.0);
+    Wind { velocity, law: WindLaw::Face(Flow::new(1.2)), ..Wind::default() }
+}
+
+fn flag(threads: usize, integrator: IntegratorKind) -> Simulation {
+    let tear = Tear { force: Some(0.6), noise: 0.3, seed: 3, ..Tear::default() };
+    let n = 16;
+    let pole: Vec<u32> = (0..n).map(|row| row * n).collect();
+    let springs = SpringMaterial { deformation_rate: 0.5, ..material([300.0, 60.0, 2.0]) };
+    let cloth = sheet([n, n], 0.06, &Mass::Density(0.15), springs, &pole);
+    let positions = cloth.positions.iter().map(|x| Vector::new(x.x, 0.0, x.y)).collect();
+    let collision = Some(Collision { thickness: 0.004, ..Collision::default() });
+    let cloth = Cloth { positions, collision, tear: Some(tear), ..cloth };
+    in_wind(cloth, vec![storm()], Settings { threads, ..settings(integrator) })
+}
+
+#[test]
+fn a_flag_in_a_storm_tears_and_its_pieces_never_pass_through_each_other() {
+    let mut simulation = flag(1, IntegratorKind::ImplicitEuler);
+    for _ in 0..60 {
+        let certificate = simulation.advance().expect("a frame");
+        assert_eq!(certificate.intersections, Some(0), "frame {}", certificate.frame);
+    }
+    assert!(simulation.torn_edges(0).len() > 10, "{:?}", simulation.torn_edges(0));
+    assert!(simulation.positions(0).iter().all(|x| x.norm() < 200.0));
+}
+
+fn bits(simulation: &Simulation) -> Vec<u64> {
+    simulation.positions(0).iter().flatten().map(|x| x.to_bits()).collect()
+}
+
+#[test]
+fn tears_are_the_same_on_any_number_of_threads_and_after_a_checkpoint() {
+    for integrator in [IntegratorKind::ImplicitEuler, IntegratorKind::Bdf2, IntegratorKind::Verlet]
+    {
+        let mut one = flag(1, integrator);
+        let mut two = flag(2, integrator);
+        run(&mut one, 20);
+        run(&mut two, 20);
+        assert!(!one.torn_edges(0).is_empty(), "{integrator:?}");
+        assert_eq!(bits(&one), bits(&two), "{integrator:?}");
+        let mut again = flag(3, integrator);
+        again.restore(&one.checkpoint()).expect("of the same flag");
+        assert_eq!(again.torn_edges(0), one.torn_edges(0));
+        assert_eq!(again.checkpoint(), one.checkpoint());
+        run(&mut one, 10);
+        run(&mut again, 10);
+        assert_eq!(bits(&one), bits(&again), "{integrator:?}");
+        // And back to where nothing was torn.
+        let whole = flag(1, integrator).checkpoint();
+        again.restore(&whole).expect("of the same flag");
+        assert!(again.torn_edges(0).is_empty());
+        assert_eq!(again.checkpoint(), whole);
+    }
+}
+
+/// Two strips side by side, joined by seams alone.
+#[test]
+fn seams_come_undone_beyond_their_force_and_at_their_frame() {
+    let of = |tear: Tear| {
+        let top: Vec<u32> = (0..4).collect();
+        let lower = sheet([4, 4], 0.1, &Mass::Density(0.2), material([200.0, 50.0, 1.0]), &top);
+        let mut faces: Vec<Vec<u32>> = lower.mesh.faces().map(<[u32]>::to_vec).collect();
+        faces.extend(lower.mesh.faces().map(|face| face.iter().map(|v| v + 16).collect()));
+        let mesh = boucle_geometry::Mesh::from_faces(32, &faces).expect("two sheets");
+        let upright = |x: &Vector, z: f64| Vector::new(x.x, 0.0, z - x.y);
+        let above = lower.positions.iter().map(|x| upright(x, 0.0));
+        let below = lower.positions.iter().map(|x| upright(x, -0.31));
+        let positions = above.chain(below).collect();
+        let springs = material([200.0, 50.0, 1.0]);
+        let cloth = crate::sheets::cloth(mesh, positions, &Mass::Density(0.2), springs, &top);
+        let seams = (0..4).map(|c| [12 + c, 16 + c]).collect();
+        let cloth = cloth.sewn(Sewing { seams, ..Sewing::default() }).expect("sewn");
+        in_wind(
+            Cloth { tear: Some(tear), ..cloth },
+            Vec::new(),
+            settings(IntegratorKind::ImplicitEuler),
+        )
+    };
+    let lowest = |simulation: &Simulation| {
+        simulation.positions(0).iter().map(|x| x.z).fold(f64::INFINITY, f64::min)
+    };
+    // What hangs on four seams weighs 0.2 * 0.09 * 9.81 = 0.18 N; as it falls into them they bear more.
+    for (force, holds) in [(2.0, true), (0.02, false)] {
+        let mut simulation = of(Tear { seam_force: Some(force), ..Tear::default() });
+        run(&mut simulation, 36);
+        assert_eq!(lowest(&simulation) > -1.0, holds, "{force}: {}", lowest(&simulation));
+    }
+    let pairs = (0..4).map(|c| [12 + c, 16 + c]).collect();
+    let mut simulation =
+        of(Tear { openings: vec![Opening { frame: 20, pairs }], ..Tear::default() });
+    let first = simulation.frame();
+    run(&mut simulation, usize::try_from(20 - first).expect("later"));
+    assert!(lowest(&simulation) > -1.0);
+    run(&mut simulation, 24);
+    assert!(lowest(&simulation) < -2.0);
+}

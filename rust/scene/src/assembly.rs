@@ -233,7 +233,9 @@ fn cloth(
     let pressure = description.pressure.as_ref();
     let pressure = pressure.map(|pressure| pressure.pressure(scene.scene.frames[0]));
     let (pin_material, bulk) = (description.pin_material(), description.water.bulk());
-    Ok(Cloth { collision, pin_weights, pin_material, pressure, bulk, ..cloth })
+    let vertices = cloth.positions.len();
+    let tear = description.tear.tear(&scene.tear, vertices, &format!("{at}.tear"))?;
+    Ok(Cloth { collision, pin_weights, pin_material, pressure, bulk, tear, ..cloth })
 }
 
 /// A fabric whose warp follows the UV coordinates of its mesh, if it is to.

@@ -5,6 +5,7 @@
 //! caches and report back to it. What comes out is bit-equal to a bake that never stopped.
 
 mod folder;
+mod torn;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -74,26 +75,13 @@ pub fn bake(
     request: &Request,
     observe: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<(Ending, Report)> {
-    let started = Instant::now();
-    let mut bake = Bake::begin(request, started)?;
-    let mut certificate = bake.fresh.take();
-    loop {
-        if let Some(certificate) = certificate {
-            let progress = bake.keep(&certificate)?;
-            let is_last = progress.frame >= bake.last;
-            let wants_stop = observe(&progress).is_break();
-            if is_last || wants_stop || bake.checkpoint_written.elapsed() >= CHECKPOINT_EVERY {
-                bake.write_checkpoint()?;
-            }
-            if wants_stop && !is_last {
-                return Ok((Ending::Stopped, bake.report));
-            }
-        }
-        if bake.assembly.simulation.frame() >= bake.last {
-            return Ok((Ending::Done, bake.report));
-        }
-        certificate = Some(bake.advance()?);
-    }
+    let mut bake = Bake::begin(request, Instant::now())?;
+    let ending = bake.run(observe);
+    // However it ended, what there is can be played.
+    let gathered = bake.folder.gather_torn(&bake.assembly);
+    let ending = ending?;
+    gathered?;
+    Ok((ending, bake.report))
 }
 
 /// A bake under way.
@@ -155,6 +143,27 @@ impl Bake {
             frame_began,
             checkpoint_written,
         })
+    }
+
+    fn run(&mut self, observe: &mut dyn FnMut(&Progress) -> ControlFlow<()>) -> Result<Ending> {
+        let mut certificate = self.fresh.take();
+        loop {
+            if let Some(certificate) = certificate {
+                let progress = self.keep(&certificate)?;
+                let is_last = progress.frame >= self.last;
+                let wants_stop = observe(&progress).is_break();
+                if is_last || wants_stop || self.checkpoint_written.elapsed() >= CHECKPOINT_EVERY {
+                    self.write_checkpoint()?;
+                }
+                if wants_stop && !is_last {
+                    return Ok(Ending::Stopped);
+                }
+            }
+            if self.assembly.simulation.frame() >= self.last {
+                return Ok(Ending::Done);
+            }
+            certificate = Some(self.advance()?);
+        }
     }
 
     /// Simulates one frame. A frame that cannot be reached leaves a checkpoint of the last good one.

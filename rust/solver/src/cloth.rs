@@ -150,13 +150,28 @@ impl Cloth {
         Ok(Self { springs, fabric: Some(fabric), ..self })
     }
 
+    /// The vertex as given that a present one is a piece of; none beyond the last.
+    pub(crate) fn as_given(&self, vertex: u32) -> Option<u32> {
+        if self.origins.is_empty() {
+            return ((vertex as usize) < self.positions.len()).then_some(vertex);
+        }
+        self.origins.get(vertex as usize).copied()
+    }
+
+    /// What is given for each vertex as given, for each of its pieces.
+    pub(crate) fn over_pieces<T: Clone>(&self, values: &[T]) -> Vec<T> {
+        if self.origins.is_empty() || values.is_empty() {
+            return values.to_vec();
+        }
+        self.origins.iter().map(|&origin| values[origin as usize].clone()).collect()
+    }
+
     /// The present vertices, in order, that some vertices as given are or have become.
     pub(crate) fn pieces_of(&self, vertices: &[u32]) -> impl Iterator<Item = u32> {
         let mut is_chosen = vec![false; self.positions.len()];
         vertices.iter().for_each(|&vertex| is_chosen[vertex as usize] = true);
         (0..self.positions.len() as u32).filter(move |&vertex| {
-            let origin = self.origins.get(vertex as usize).copied().unwrap_or(vertex);
-            is_chosen[origin as usize]
+            self.as_given(vertex).is_some_and(|origin| is_chosen[origin as usize])
         })
     }
 

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::torn;
 use crate::assembly::Assembly;
 use crate::atomic::{self, Durability};
 use crate::checkpoint::{self, Checkpoint};
@@ -54,17 +55,34 @@ impl Folder {
         self.write_report(report)?;
         let simulation = &assembly.simulation;
         for index in 0..simulation.cloth_count() {
-            let cloth = simulation.cloth(index);
+            let cloth = simulation.given(index);
             let path = self.path.join(format!("{}.obj", cloth.name));
             let mut bytes = Vec::new();
             obj::write(&mut bytes, &cloth.mesh, &cloth.positions)
                 .map_err(|error| Error::cache(&path, "written", &error))?;
             atomic::replace(&path, &bytes, Durability::Process)?;
-            let path = self.path.join(format!("{}.pc2", cloth.name));
-            let vertex_count = cloth.mesh.vertex_count() as u32;
-            self.caches.push(pc2::Writer::create(&path, vertex_count, first_kept)?);
+            let (path, point_count) = self.cache_of(assembly, index);
+            self.caches.push(pc2::Writer::create(&path, point_count, first_kept)?);
         }
         Ok(self)
+    }
+
+    /// Where the cache of a cloth is, and how many points it has.
+    fn cache_of(&self, assembly: &Assembly, index: usize) -> (PathBuf, u32) {
+        let cloth = assembly.simulation.given(index);
+        if torn::tears(&assembly.simulation, index) {
+            let corners = cloth.mesh.faces().map(<[u32]>::len).sum::<usize>();
+            return (torn::corners_path(&self.path, &cloth.name), corners as u32);
+        }
+        let path = self.path.join(format!("{}.pc2", cloth.name));
+        (path, cloth.mesh.vertex_count() as u32)
+    }
+
+    /// Leaves cloth that tears as caches of the vertices that it has by now.
+    pub(super) fn gather_torn(&self, assembly: &Assembly) -> Result<()> {
+        let simulation = &assembly.simulation;
+        let torn = (0..simulation.cloth_count()).filter(|&index| torn::tears(simulation, index));
+        torn.into_iter().try_for_each(|index| torn::gather(&self.path, simulation, index))
     }
 
     /// Takes up the caches after their first samples.
@@ -76,11 +94,9 @@ impl Folder {
     ) -> Result<Self> {
         let simulation = &assembly.simulation;
         for index in 0..simulation.cloth_count() {
-            let cloth = simulation.cloth(index);
-            let path = self.path.join(format!("{}.pc2", cloth.name));
-            let vertex_count = cloth.mesh.vertex_count() as u32;
+            let (path, point_count) = self.cache_of(assembly, index);
             let samples = sample_count as u32;
-            self.caches.push(pc2::Writer::resume(&path, vertex_count, first_kept, samples)?);
+            self.caches.push(pc2::Writer::resume(&path, point_count, first_kept, samples)?);
         }
         Ok(self)
     }
@@ -89,7 +105,13 @@ impl Folder {
     pub(super) fn append(&mut self, assembly: &Assembly) -> Result<()> {
         let samples = self.caches.first().map_or(0, pc2::Writer::sample_count) as usize;
         for (index, cache) in self.caches.iter_mut().enumerate() {
-            if let Err(error) = cache.append(&assembly.simulation.positions(index)) {
+            let simulation = &assembly.simulation;
+            let points = if torn::tears(simulation, index) {
+                torn::corner_positions(simulation, index)
+            } else {
+                simulation.positions(index)
+            };
+            if let Err(error) = cache.append(&points) {
                 self.truncate(samples);
                 return Err(error);
             }

@@ -1,7 +1,7 @@
 use super::*;
 use crate::checkpoint;
 use crate::description::UpAxis;
-use crate::pc2;
+use crate::{obj, pc2};
 
 const SCENE: &str = r#"
 [scene]
@@ -362,4 +362,55 @@ fn a_cloth_starts_with_its_velocity_but_for_its_pins() {
     // After one frame: 2 m/s and gravity for 1/24 s.
     let fallen = 9.0 - f64::from(numbers[48 + 3 * 3 + 2]);
     assert!((fallen - 2.0 / 24.0 - 0.5 * 9.81 / 576.0).abs() < 2e-3, "{fallen}");
+}
+
+const TORN: &str = r#"
+[scene]
+frames = [1, 16]
+[collision]
+enabled = false
+[tear]
+enabled = true
+strain = 0.3
+[[cloth]]
+name = "sheet"
+grid = { size = [1, 1], vertices = [7, 9], plane = "xz" }
+pins = ["top"]
+springs = { stretch = 20, shear = 5, bend = 0.1, limiter = "none" }
+[cloth.tear]
+openings = [{ frame = 6, pairs = [[28, 29], [29, 30], [30, 31], [31, 32], [32, 33], [33, 34]] }]
+"#;
+
+/// The points of each corner of each face in each sample.
+fn played(place: &Place, out: &str) -> Vec<Vec<[u32; 3]>> {
+    let object = place.bytes(&format!("{out}/sheet.obj"));
+    let content = obj::read(object.as_slice(), UpAxis::Z).expect("a mesh");
+    let (header, numbers) =
+        pc2::read(&place.0.path().join(format!("{out}/sheet.pc2"))).expect("a cache");
+    assert_eq!(header.vertex_count as usize, content.positions.len());
+    let samples = numbers.chunks_exact(3 * header.vertex_count as usize);
+    let at = |sample: &[f32], v: u32| [0, 1, 2].map(|axis| sample[3 * v as usize + axis].to_bits());
+    samples.map(|sample| content.mesh.faces().flatten().map(|&v| at(sample, v)).collect()).collect()
+}
+
+#[test]
+fn a_torn_cloth_is_left_with_all_its_vertices_and_the_same_whether_stopped_or_not() {
+    let place = Place::new(TORN);
+    whole(&place.request("at_once"));
+    let at_once = played(&place, "at_once");
+    assert_eq!(at_once.len(), 16);
+    // Row 4 of 7 columns has opened at frame 6: its corners below and above are in two places from frame 7 on.
+    let object = place.bytes("at_once/sheet.obj");
+    let content = obj::read(object.as_slice(), UpAxis::Z).expect("a mesh");
+    assert!(content.positions.len() >= 63 + 7, "{}", content.positions.len());
+    for frame in [3, 9] {
+        stopped_at(&place.request("in_parts"), frame);
+        let parts = played(&place, "in_parts");
+        assert_eq!(parts[..], at_once[..frame as usize]);
+        whole(&Request { resume: true, ..place.request("in_parts") });
+        assert_eq!(played(&place, "in_parts"), at_once);
+        assert_eq!(place.bytes("in_parts/sheet.pc2"), place.bytes("at_once/sheet.pc2"));
+        assert_eq!(place.bytes("in_parts/sheet.obj"), place.bytes("at_once/sheet.obj"));
+        assert_eq!(place.hashes("in_parts"), place.hashes("at_once"));
+    }
 }

@@ -1,13 +1,10 @@
-//! Words to choose from, and keys of the format that are not supported yet.
+//! Words to choose from.
 //!
 //! Both tell their refusal to [`tree`](super::tree) in its own short form: a message that begins with `; ` or ` is` stands
 //! behind `KEY = VALUE`, one that begins with `is` behind `KEY` alone.
 
-use std::fmt;
-use std::marker::PhantomData;
-
-use serde::de::{Deserializer, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, Serialize, Serializer};
+use serde::de::{Deserializer, Error};
+use serde::{Deserialize, Serializer};
 
 /// A word out of a fixed list, each standing for a value of `Self`.
 pub(crate) trait Choice: Copy + PartialEq + 'static {
@@ -54,90 +51,6 @@ pub(crate) fn nearest<'a>(
         .filter(|(distance, name)| *distance <= name.len().div_ceil(3))
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, name)| name)
-}
-
-/// A key of the format that is not supported yet: whatever it holds is refused, by name.
-#[derive(Clone, Debug, PartialEq)]
-pub enum NotYet {}
-
-impl<'de> Deserialize<'de> for NotYet {
-    fn deserialize<D: Deserializer<'de>>(_: D) -> Result<Self, D::Error> {
-        Err(D::Error::custom("is not supported yet"))
-    }
-}
-
-impl Serialize for NotYet {
-    fn serialize<S: Serializer>(&self, _: S) -> Result<S::Ok, S::Error> {
-        match *self {}
-    }
-}
-
-/// The keys of a table (or of a list of tables) that is not supported yet.
-pub trait LaterKeys {
-    /// Every key of the table.
-    const KEYS: &'static [&'static str];
-}
-
-/// A table that is not supported yet: its first key is refused, by name, and unknown keys as such.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Later<K>(NotYet, PhantomData<K>);
-
-impl<K> Serialize for Later<K> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        self.0.serialize(serializer)
-    }
-}
-
-impl<'de, K: LaterKeys> Deserialize<'de> for Later<K> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(LaterVisitor(PhantomData))
-    }
-}
-
-struct LaterVisitor<K>(PhantomData<K>);
-
-impl<'de, K: LaterKeys> Visitor<'de> for LaterVisitor<K> {
-    type Value = Later<K>;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("a table")
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
-        let Some(key) = map.next_key::<String>()? else {
-            return Err(A::Error::custom("is not supported yet"));
-        };
-        if !K::KEYS.contains(&key.as_str()) {
-            return Err(A::Error::unknown_field(&key, K::KEYS));
-        }
-        Ok(Later(map.next_value()?, PhantomData))
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<Self::Value, A::Error> {
-        if let Some(later) = list.next_element()? {
-            return Ok(later);
-        }
-        while list.next_element::<IgnoredAny>()?.is_some() {}
-        Err(A::Error::custom("is not supported yet"))
-    }
-}
-
-/// Makes a marker type that lists the keys of a table for later.
-macro_rules! later_table {
-    ($($(#[$doc:meta])* $name:ident { $($key:literal),+ $(,)? })+) => {$(
-        $(#[$doc])*
-        #[derive(Clone, Debug, PartialEq)]
-        pub enum $name {}
-
-        impl LaterKeys for $name {
-            const KEYS: &'static [&'static str] = &[$($key),+];
-        }
-    )+};
-}
-
-later_table! {
-    /// `[tear]`.
-    TearKeys { "enabled", "force", "strain" }
 }
 
 #[cfg(test)]

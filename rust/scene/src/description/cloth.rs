@@ -12,6 +12,7 @@ use super::pins::Pins;
 use super::shape::{PressureDescription, SewingDescription, Shrink};
 use super::springs::Springs;
 use super::table;
+use super::tear::ClothTear;
 use crate::error::{Error, Result};
 use crate::limits;
 use crate::preset::FabricPreset;
@@ -61,6 +62,9 @@ pub struct ClothDescription {
     /// `[cloth.sewing]`.
     #[serde(default, deserialize_with = "table::optional")]
     pub sewing: Option<SewingDescription>,
+    /// `[cloth.tear]`.
+    #[serde(default, deserialize_with = "table::one")]
+    pub tear: ClothTear,
     /// Stiffness (N/m) by which pins of weight 1 that hang together would be drawn, were they soft; a weight takes a part.
     pub pin_stiffness: Option<f64>,
     /// Damping of soft pins, as a multiple of the critical.
@@ -157,6 +161,7 @@ impl ClothDescription {
         }
         let material = self.pin_material();
         material.check().map_err(|error| Error::input(format!("{at}.{error}")))?;
+        self.tear.check(&format!("{at}.tear"))?;
         self.fabric.check(&format!("{at}.fabric"))?;
         self.springs.check(at)
     }

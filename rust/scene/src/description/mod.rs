@@ -1,8 +1,7 @@
 //! A scene as data: the keys of SCENE.toml, typed and checked.
 //!
 //! The same keys come as TOML (files) and as JSON (from Blender). Either becomes a tree, overrides change the tree, and only
-//! then it is typed, so that every refusal can name the key and the value that stands there. Keys that later versions will
-//! take are known and refused by name; nothing is ignored.
+//! then it is typed, so that every refusal can name the key and the value that stands there. Nothing is ignored.
 
 mod choice;
 mod cloth;
@@ -17,10 +16,10 @@ mod shape;
 mod solver;
 mod springs;
 mod table;
+mod tear;
 mod tree;
 
 pub(crate) use choice::Choice;
-pub use choice::{Later, LaterKeys, NotYet, TearKeys};
 pub use cloth::{ClothDescription, Grid, Model, Plane, Transform, UpAxis};
 pub use collider::{Capsule, ColliderDescription, Cuboid, HalfSpace, Sphere};
 pub use collision::{ClothCollision, CollisionDescription};
@@ -32,6 +31,7 @@ pub use pins::{Keyframe, PinGroup, Pins};
 pub use shape::{PressureDescription, PressureKeyframe, SewingDescription, Shrink, ShrinkKeyframe};
 pub use solver::{SolverDescription, Substeps};
 pub use springs::Springs;
+pub use tear::{ClothTear, OpeningDescription, TearDescription};
 pub(crate) use tree::joined;
 
 use boucle_solver::Field;
@@ -64,8 +64,9 @@ pub struct Scene {
     /// `[[collider]]`.
     #[serde(default, deserialize_with = "table::list")]
     pub collider: Vec<ColliderDescription>,
-    /// `[tear]`, for later.
-    pub tear: Option<Later<TearKeys>>,
+    /// `[tear]`.
+    #[serde(default, deserialize_with = "table::one")]
+    pub tear: TearDescription,
 }
 
 /// Force fields out of a JSON list of tables with the keys of `[[force]]`: what a scene changes from frame to frame.
@@ -168,6 +169,7 @@ impl Scene {
             cloth.collision.check(&format!("{at}.collision"), &colliders, &cloths)?;
         }
         self.solver.check(self.scene.fps)?;
+        self.tear.check("tear")?;
         for (index, force) in self.force.iter().enumerate() {
             force.check(&format!("force.{index}"), &cloths)?;
         }

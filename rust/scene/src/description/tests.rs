@@ -116,17 +116,15 @@ fn unknown_keys_are_refused_by_name_with_what_was_perhaps_meant() {
     }
 }
 
-#[test]
-fn keys_of_later_versions_are_refused_by_name() {
-    for key in ["enabled", "force", "strain"] {
-        assert_eq!(refused(&format!("tear.{key}=1")), format!("tear.{key} is not supported yet"));
-    }
-    assert_eq!(refusal(&format!("[tear]\n{GOOD}")), "tear is not supported yet");
-}
-
 /// An override of the good scene, and how its refusal begins.
 const WRONG_VALUES: &[(&str, &str)] = &[
     ("scene.fps=\"fast\"", "scene.fps = \"fast\"; accepted: a number"),
+    ("tear.force=-1", "tear.force = -1.0; accepted: 0 to 1e12"),
+    ("tear.noise=2", "tear.noise = 2.0; accepted: 0 to 1"),
+    ("tear.forse=2", "tear.forse is an unknown key; did you mean \"force\"?"),
+    ("tear.strength=[1]", "tear.strength is an unknown key"),
+    ("cloth.0.tear.strain=nan", "cloth.flag.tear.strain = NaN; accepted: 0 to 1e12"),
+    ("cloth.0.tear.openings=[{frame=3}]", "cloth.flag.tear.openings.0.pairs is missing"),
     ("scene.fps=0", "scene.fps = 0.0; accepted: 0.01 to 1e6"),
     ("scene.fps=nan", "scene.fps = NaN; accepted"),
     ("scene.gravity=[0, 0, -inf]", "scene.gravity.2 = -inf; accepted"),

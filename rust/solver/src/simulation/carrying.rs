@@ -91,7 +91,8 @@ impl Simulation {
         let cloth = self.bases.partition_point(|&base| base <= particle) - 1;
         let vertex = particle - self.bases[cloth];
         let is_there = (vertex as usize) < next.cloths[cloth].positions.len();
-        next.bases[cloth] + if is_there { vertex } else { self.as_given(cloth, vertex) }
+        let given = if is_there { None } else { self.cloths[cloth].as_given(vertex) };
+        next.bases[cloth] + given.unwrap_or(vertex)
     }
 
     fn tensions_carried(&self, next: &Self, from: &[u32]) -> Vec<f64> {

@@ -14,9 +14,9 @@ impl Simulation {
     /// Where the pins of a cloth are to be at the end of the next frame (m): a position for each vertex, of which
     /// only the pinned are read. They move there in a straight line, or are drawn along one if they are soft.
     pub fn set_pin_targets(&mut self, cloth: usize, targets: &[Vector]) {
-        let base = self.bases[cloth];
-        self.pins.aim(|particle| {
-            let vertex = particle.checked_sub(base)?;
+        let Self { pins, cloths, bases, .. } = self;
+        pins.aim(|particle| {
+            let vertex = cloths[cloth].as_given(particle.checked_sub(bases[cloth])?)?;
             targets.get(vertex as usize).copied()
         });
     }
@@ -27,14 +27,14 @@ impl Simulation {
     /// # Errors
     /// [`Error::OutOfDomain`] when one is not from 0 to 1.
     pub fn set_pin_weights(&mut self, cloth: usize, weights: &[f64]) -> Result<()> {
-        for &pin in &self.cloths[cloth].pins {
+        for &pin in &self.given(cloth).pins {
             if let Some(&weight) = weights.get(pin as usize) {
                 within_one(&format!("the weight of pin {pin}"), weight)?;
             }
         }
-        let base = self.bases[cloth];
-        self.pins.weigh(|particle| {
-            let vertex = particle.checked_sub(base)?;
+        let Self { pins, cloths, bases, .. } = self;
+        pins.weigh(|particle| {
+            let vertex = cloths[cloth].as_given(particle.checked_sub(bases[cloth])?)?;
             weights.get(vertex as usize).copied()
         });
         self.follow_holds();
@@ -54,9 +54,9 @@ impl Simulation {
 
     /// Lets pins go, with the velocity they have: their weight is 0 from now on.
     pub fn release_pins(&mut self, cloth: usize, vertices: &[u32]) {
-        let base = self.bases[cloth];
-        self.pins.weigh(|particle| {
-            let vertex = particle.checked_sub(base)?;
+        let Self { pins, cloths, bases, .. } = self;
+        pins.weigh(|particle| {
+            let vertex = cloths[cloth].as_given(particle.checked_sub(bases[cloth])?)?;
             vertices.contains(&vertex).then_some(0.0)
         });
         self.follow_holds();

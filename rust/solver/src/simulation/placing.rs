@@ -5,11 +5,12 @@ use boucle_geometry::Vector;
 use super::Simulation;
 
 impl Simulation {
-    /// Puts the vertices of a cloth at these positions (m), at rest, and its hard pins with them. Rest lengths and creases
+    /// Puts the vertices of a cloth as given at these positions (m), at rest, and its hard pins with them. Rest lengths and creases
     /// stay, and so does what draws soft pins.
     pub fn set_positions(&mut self, cloth: usize, positions: &[Vector]) {
         let particles = self.particles(cloth);
-        for (particle, position) in particles.clone().zip(positions) {
+        let positions = self.cloths[cloth].over_pieces(positions);
+        for (particle, position) in particles.clone().zip(&positions) {
             self.state.position.set(particle, position);
             self.state.velocity.set(particle, &Vector::zeros());
         }
@@ -23,9 +24,10 @@ impl Simulation {
         self.intersect();
     }
 
-    /// Gives the vertices of a cloth these velocities (m/s); pinned ones follow their targets all the same.
+    /// Gives the vertices of a cloth as given these velocities (m/s); pinned ones follow their targets all the same.
     pub fn set_velocities(&mut self, cloth: usize, velocities: &[Vector]) {
-        for (particle, velocity) in self.particles(cloth).zip(velocities) {
+        let velocities = self.cloths[cloth].over_pieces(velocities);
+        for (particle, velocity) in self.particles(cloth).zip(&velocities) {
             if !self.system.is_pinned(particle) {
                 self.state.velocity.set(particle, velocity);
             }

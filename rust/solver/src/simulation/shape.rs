@@ -22,7 +22,7 @@ impl Simulation {
         shape: Option<&[Vector]>,
         shrink: Option<&[f64]>,
     ) -> Result<()> {
-        let given = &self.cloths[cloth];
+        let given = self.given(cloth);
         let count = given.positions.len();
         if let Some(shape) = shape {
             if shape.len() != count {
@@ -34,6 +34,10 @@ impl Simulation {
         }
         check_shrink(&given.name, shrink.unwrap_or(&[]), count)?;
         self.ensure_rest(cloth);
+        let own = &self.cloths[cloth];
+        let shape = shape.map(|shape| own.over_pieces(shape));
+        let shrink = shrink.map(|shrink| own.over_pieces(shrink));
+        let (shape, shrink) = (shape.as_deref(), shrink.as_deref());
         if let Some(rest) = &mut self.rests[cloth] {
             let (given, base) = (&self.cloths[cloth], self.bases[cloth]);
             let angles = shape.map(|shape| self.system.fabrics.angles_in(cloth, base, shape));

@@ -53,10 +53,10 @@ impl Simulation {
         self.edge_loads(cloth).into_iter().map(|(ends, pull, _)| (ends, pull)).collect()
     }
 
-    /// The number that a vertex had as the cloth was given.
-    pub(super) fn as_given(&self, cloth: usize, vertex: u32) -> u32 {
-        let origins = self.splits[cloth].as_ref().map_or(&[][..], |split| split.origins());
-        origins.get(vertex as usize).copied().unwrap_or(vertex)
+    /// A cloth as it was given, whole.
+    #[must_use]
+    pub fn given(&self, cloth: usize) -> &Cloth {
+        self.splits[cloth].as_ref().map_or(&self.cloths[cloth], |split| split.given())
     }
 
     /// Tears what must tear at the end of a frame.

@@ -163,7 +163,7 @@ fn a_closed_body_floats_as_deep_as_the_water_that_it_displaces_weighs() {
     }
     // Stiffer: 1e6 N/m let the pressure of ten metres take a tenth of its volume.
     let heavy = raft(500.0);
-    let stiffer = |spring: &Spring| Spring { stiffness: 1e8, ..spring.clone() };
+    let stiffer = |spring: &Spring| Spring { stiffness: 1e8, ..*spring };
     let heavy = Cloth { springs: heavy.springs.iter().map(stiffer).collect(), ..heavy };
     let mut sinking = in_wind(heavy, Vec::new(), settings(still(0.2)));
     run(&mut sinking, 120);

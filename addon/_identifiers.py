@@ -80,6 +80,7 @@ class Panels:
     OBJECT_COLLISIONS = "BOUCLE_PT_object_collisions"
     SELF_COLLISIONS = "BOUCLE_PT_self_collisions"
     FORCES = "BOUCLE_PT_forces"
+    WATER = "BOUCLE_PT_water"
     FIELD_WEIGHTS = "BOUCLE_PT_field_weights"
     SOLVER = "BOUCLE_PT_solver"
     SOLVER_ADVANCED = "BOUCLE_PT_solver_advanced"
@@ -119,6 +120,7 @@ class PanelOrder:
     OBJECT_COLLISIONS = 10
     SELF_COLLISIONS = 20
     # below Forces
+    WATER = 5
     FIELD_WEIGHTS = 10
     # below Cache
     RESULT = 10

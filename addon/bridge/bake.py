@@ -35,7 +35,7 @@ from . import (
     vertex_attributes,
 )
 from .fields import Fields
-from .winds import Winds
+from .winds import Water, Winds
 
 
 @dataclass(frozen=True)
@@ -120,6 +120,7 @@ class Bake:
         self._restrict(description)
         met = colliders.Colliders(cloths, scene, self._depsgraph_of(cloths[0]))
         pushing, blowing = Fields(cloths[0], scene), Winds(cloths, description)
+        water = Water(cloths[0], description)
         given = [simulation.given(obj, self._start(obj), self._matrix(obj)) for obj in cloths]
         make = simulation.maker(description, given, self.options.threads, met.arrays)
         build = Step(start, make)
@@ -137,7 +138,9 @@ class Bake:
             moment = self._moment(frame, held, met)
             depsgraph = self._depsgraph_of(self._objects()[0])
             return moment._replace(
-                forces=pushing.sample(depsgraph), winds=blowing.sample(depsgraph)
+                forces=pushing.sample(depsgraph),
+                winds=blowing.sample(depsgraph),
+                water=water.sample(depsgraph),
             )
 
         paths = (store.files.pc2 for store in self.stores.each)

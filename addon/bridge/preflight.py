@@ -31,7 +31,9 @@ SAMPLED_ONCE = (
     "damping_ratio", "damping_ratio_stretch", "damping_ratio_shear", "damping_ratio_bend",
     "yield_curvature", "hardening", "bend_hysteresis",
     "air_damping", "deformation_rate", "density", "mass_per_vertex", "wind_coefficient",
-    "wind_air_density", "thickness", "friction", "pin_damping",
+    "wind_air_density", "wind_drag", "wind_lift", "wind_gusts", "wind_gust_period", "wind_turbulence",
+    "wind_turbulence_size", "water_density", "water_drag", "water_friction", "wave_amplitude", "wave_length", "wave_angle",
+    "bulk_density", "absorbency", "soak_time", "dry_time", "thickness", "friction", "pin_damping",
 )  # fmt: skip
 """Settings that may be animated in the file, of which the solver takes the first frame's value."""
 

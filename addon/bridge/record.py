@@ -16,11 +16,13 @@ from . import animation, colliders, fields, mesh_arrays, pins, settings, shape, 
 
 FOLLOWED = (
     "pin_strength", "pin_stiffness", *shape.SHRINK, *shape.PRESSURE, "wind_velocity",
+    "water_level", "water_velocity",
 )  # fmt: skip
 """Settings that are followed where they are animated. All others are taken once, at the start frame."""
 _USED_WITH = {
     "pin_strength": "pin_group", "pin_stiffness": "pin_group", "wind_velocity": "use_wind",
     **dict.fromkeys(shape.PRESSURE, "use_pressure"),
+    **dict.fromkeys(("water_level", "water_velocity"), "use_water"),
 }  # fmt: skip
 """Without what some of them make no difference."""
 
@@ -46,6 +48,8 @@ def of(
     map_ = warp.uvs(obj) if in_full else None
     if map_ is not None:
         made["settings"]["cloth.fabric.uv"] = drift.digest(map_)
+    if obj.boucle.use_water and obj.boucle.water_object is not None:
+        made["settings"]["water surface"] = _surface(obj.boucle.water_object)
     strength = pins.constant_strength(obj)
     if strength < 1.0:
         made["settings"]["cloth.pin_strength"] = strength
@@ -54,6 +58,12 @@ def of(
         made["settings"]["cloths met"] = sorted(met)
     made["settings"].update(_keys(obj, scene))
     return made
+
+
+def _surface(surface: bpy.types.Object) -> list[Any]:
+    """The object at which water has its surface, and its height, if nothing moves it."""
+    moves = surface.animation_data or surface.parent or surface.constraints
+    return [surface.name] if moves else [surface.name, round(surface.location.z, 6)]
 
 
 def _keys(obj: bpy.types.Object, scene: bpy.types.Scene) -> Iterator[tuple[str, str]]:

@@ -31,7 +31,7 @@ from .colliders import Colliders
 from .fields import Fields
 from .pins import Pins
 from .settling import LiveSettle
-from .winds import Winds
+from .winds import Water, Winds
 
 
 @dataclass
@@ -46,6 +46,7 @@ class Session:
     colliders: Colliders
     fields: Fields
     winds: Winds
+    water: Water
     display: display.Display
     basis: tuple[object, ...]
     """What must not change while the session lives; looked at at every frame."""
@@ -80,10 +81,11 @@ def build(obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.De
     make = simulation.maker(description, [given], colliders=met.arrays)
     solver = make()
     pushing, held = Fields(obj, scene), Pins(description, 0, len(obj.data.vertices))
-    blowing = Winds([obj], description)
+    blowing, water = Winds([obj], description), Water(obj, description)
     pose = sampling.pose(obj, depsgraph, held)
     forces = pushing.sample(depsgraph)
-    Moment([pose], met.targets(depsgraph), forces, blowing.sample(depsgraph)).aim(solver)
+    winds, waters = blowing.sample(depsgraph), water.sample(depsgraph)
+    Moment([pose], met.targets(depsgraph), forces, winds, waters).aim(solver)
     how = scene_json.settling(description)
     settle = LiveSettle(solver, how, len(obj.data.vertices), to_object) if how.frames else None
     first = Frame(local, solver.certificate(), read_numbers(solver, obj))
@@ -96,6 +98,7 @@ def build(obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.De
         colliders=met,
         fields=pushing,
         winds=blowing,
+        water=water,
         display=shown,
         basis=basis_of(obj, scene),
         settings=settings_digest(obj, scene),
@@ -161,7 +164,8 @@ def moment_of(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Deps
     """Where pins and colliders go now, and what pushes."""
     targets, forces = session.colliders.targets(depsgraph), session.fields.sample(depsgraph)
     pose = sampling.pose(obj, depsgraph, session.pins)  # last: what pins tell is told once
-    return Moment([pose], targets, forces, session.winds.sample(depsgraph))
+    winds, water = session.winds.sample(depsgraph), session.water.sample(depsgraph)
+    return Moment([pose], targets, forces, winds, water)
 
 
 def read_positions(solver: Any, to_object: points.Affine, vertex_count: int) -> Points:

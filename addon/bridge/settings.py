@@ -9,7 +9,7 @@ import bpy
 
 from ..core import scene_json
 from ..core.scene_json import Groups, World
-from . import animation, colliders, pins, shape, vertex_groups
+from . import animation, colliders, pins, shape, vertex_groups, winds
 
 _DATA = frozenset({"POINTER", "COLLECTION"})
 
@@ -95,6 +95,8 @@ def describe(
     frame = obj.boucle.frame_start if at_start else None
     things = [colliders.describe(thing, frame) for thing in met]
     given = values_at_start(obj) if at_start else values(obj)
+    if obj.boucle.water_object is not None:  # told frame by frame
+        given["water_level"] = 0.0 if at_start else winds.level_of(obj, given["water_level"])
     around = steady_world(scene) if at_start else world(scene)
     if animation.moves(obj, "boucle.pin_stiffness"):
         given.pop("pin_stiffness")  # told frame by frame

@@ -1,4 +1,4 @@
-"""Winds whose velocity is animated: cloths are told it frame by frame. A wind stands still from one frame to the next."""
+"""Winds and water that are animated: cloths are told of them frame by frame. They stand still from one frame to the next."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Winds:
     def __init__(self, cloths: Sequence[bpy.types.Object], description: dict[str, Any]) -> None:
         """Remember which of the description's winds blow as an animation says; each cloth has one or none."""
         first = cloths[0].name
-        forces = description.get("force", [])
+        forces = [force for force in description.get("force", []) if force["kind"] == "wind"]
         blowing = [force.get("region", {}).get("cloth", first) for force in forces]
         self._moving = [
             (blowing.index(obj.name), registry.key_of(obj), obj.session_uid)
@@ -37,3 +37,37 @@ class Winds:
                 velocity = obj.evaluated_get(depsgraph).boucle.wind_velocity
                 told.append((number, tuple(decimal(part) for part in velocity)))
         return tuple(told)
+
+
+class Water:
+    """The water of cloths while they are simulated: that of the first, without hold on Blender's data."""
+
+    def __init__(self, cloth: bpy.types.Object, description: dict[str, Any]) -> None:
+        """Remember whether it moves."""
+        self._key, self._uid = registry.key_of(cloth), cloth.session_uid
+        has_water = any(force["kind"] == "water" for force in description.get("force", []))
+        paths = ("boucle.water_level", "boucle.water_velocity")
+        moves = cloth.boucle.water_object is not None or any(
+            animation.moves(cloth, path) for path in paths
+        )
+        self._moves = has_water and moves
+
+    def sample(self, depsgraph: bpy.types.Depsgraph) -> tuple[float, tuple[float, ...]] | None:
+        """Level (m) and current (m/s) at the depsgraph's frame; None where they do not move."""
+        obj = registry.by_key(self._key, self._uid) if self._moves else None
+        if obj is None:
+            return None
+        settings = obj.evaluated_get(depsgraph).boucle
+        current = tuple(decimal(part) for part in settings.water_velocity)
+        return level_of(obj, settings.water_level, depsgraph), current
+
+
+def level_of(
+    obj: bpy.types.Object, level: float, depsgraph: bpy.types.Depsgraph | None = None
+) -> float:
+    """The height (m) of the water around a cloth: that of its object, where it has one."""
+    surface = obj.boucle.water_object
+    if surface is None:
+        return decimal(level)
+    shown = surface if depsgraph is None else surface.evaluated_get(depsgraph)
+    return decimal(shown.matrix_world.translation.z)

@@ -35,6 +35,7 @@ class Simulation(Protocol):
     def set_gravity(self, gravity: tuple[float, float, float]) -> None: ...
     def set_fields(self, fields: str) -> None: ...
     def set_wind_velocity(self, wind: int, velocity: tuple[float, float, float]) -> None: ...
+    def set_water(self, level: float, velocity: tuple[float, float, float]) -> None: ...
     def advance(self) -> dict[str, Any]: ...
     def certificate(self, cloth: int | None = None) -> dict[str, Any]: ...
     def set_positions(self, cloth: int, positions: Points) -> None: ...
@@ -85,6 +86,8 @@ class Moment(NamedTuple):
     """None where gravity stays as it is and there are no fields."""
     winds: Sequence[tuple[int, tuple[float, float, float]]] = ()
     """Numbers of winds that change, and their velocities (m/s)."""
+    water: tuple[float, tuple[float, float, float]] | None = None
+    """Level (m) and current (m/s) of a water that changes."""
 
     def aim(self, simulation: Simulation) -> None:
         """Tell a simulation what goes where in the next frame, and what pushes."""
@@ -93,6 +96,8 @@ class Moment(NamedTuple):
             simulation.set_fields(self.forces.fields)
         for wind, velocity in self.winds:
             simulation.set_wind_velocity(wind, velocity)
+        if self.water is not None:
+            simulation.set_water(*self.water)
         for cloth, pose in enumerate(self.poses):
             pose.aim(simulation, cloth)
         for number, targets in enumerate(self.colliders):

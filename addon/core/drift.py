@@ -50,7 +50,7 @@ _VERTICES = {
 """Lists of vertices by the end of their key."""
 
 
-_NAMED = ("collider ", "force field ", "field weights", "keys of ", "cloths met")
+_NAMED = ("water ", "collider ", "force field ", "field weights", "keys of ", "cloths met")
 """Beginnings of the keys that are words as they stand."""
 
 
@@ -72,7 +72,15 @@ def record(
 ) -> dict[str, Any]:
     """What a bake remembers of its cloth: settings one by one, long lists as a digest, and force fields by their names."""
     settings: dict[str, Any] = dict(fields)
-    _flatten({key: scene[key] for key in scene if key != "collider"}, "", settings)
+    steady = {key: scene[key] for key in scene if key not in ("collider", "force")}
+    for force in scene.get("force", []):
+        if force["kind"] == "water":
+            settings.update(
+                {f"water {key.replace('_', ' ')}": value for key, value in force.items()}
+            )
+        else:
+            steady["force"] = [force]
+    _flatten(steady, "", settings)
     for thing in scene.get("collider", []):
         settings[f'collider "{thing["name"]}"'] = [thing["thickness"], thing["friction"]]
     settings.pop("cloth.name", None)

@@ -7,6 +7,9 @@ from typing import Any, NamedTuple
 
 from .scene_json import settling
 
+WATER = "water"
+"""The kind of force of which cloths that are simulated together have the same one."""
+
 Scene = Mapping[str, Any]
 """The description of one cloth among its colliders, or of several."""
 
@@ -38,7 +41,8 @@ def join(scenes: Sequence[Scene], meets: Callable[[str, str], bool]) -> dict[str
         cloth = dict(scene["cloth"][0])
         cloth["collision"] = {**cloth["collision"], "colliders": own, "cloths": met}
         cloths.append(cloth)
-        forces += [_on(name, force) for force in scene.get("force", [])]
+        winds = (force for force in scene.get("force", []) if force["kind"] != WATER)
+        forces += [_on(name, force) for force in winds]
     start = scenes[0]["scene"]["frames"][0]
     end = max(scene["scene"]["frames"][1] for scene in scenes)
     solver = dict(scenes[0]["solver"])
@@ -50,6 +54,7 @@ def join(scenes: Sequence[Scene], meets: Callable[[str, str], bool]) -> dict[str
         "cloth": cloths,
         "solver": solver,
     }
+    forces += [water for water in [water_of(scenes[0])] if water]
     parts = {"force": forces, "collider": [colliders[name] for name in sorted(colliders)]}
     rest = {key: joined[key] for key in joined if key not in parts}
     return {**rest, **{key: part for key, part in parts.items() if part}}
@@ -107,9 +112,16 @@ def _difference(one: Scene, other: Scene) -> str:
     ):
         if one["solver"].get(key) != other["solver"].get(key):
             return words
+    if water_of(one) != water_of(other):
+        return "waters"
     if _rules(one) != _rules(other):
         return "solver settings"
     return ""
+
+
+def water_of(scene: Scene) -> Mapping[str, Any] | None:
+    """The water of a description, if it has one."""
+    return next((force for force in scene.get("force", []) if force["kind"] == WATER), None)
 
 
 def _rules(scene: Scene) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from . import shape
+from . import flow, shape
 from .points import Affine
 from .refusal import Refusal
 from .settle import Settling
@@ -86,9 +86,9 @@ def describe(
     if values.get("settle_frames"):
         scene["scene"]["settle_frames"] = int(values["settle_frames"])
         scene["scene"]["settle_damped"] = bool(values["settle_damped"])
-    force = _wind(values, groups.wind)
-    if force:
-        scene["force"] = [force]
+    forces = [force for force in (flow.wind(values, groups.wind), flow.water(values)) if force]
+    if forces:
+        scene["force"] = forces
     if colliders:
         scene["collider"] = [collider(thing) for thing in colliders]
     return scene
@@ -142,6 +142,9 @@ def _cloth(name: str, values: Values, groups: Groups, meets: bool) -> dict[str, 
             cloth[key] = decimal(values[key])
     cloth.update(shape.describe(values, groups.shape))
     cloth["collision"] = collision(values, groups, meets)
+    bulk = flow.bulk(values)
+    if bulk:
+        cloth["water"] = bulk
     return cloth
 
 
@@ -243,17 +246,3 @@ def tolerance(values: Values) -> float:
     """What a step of an implicit integrator may be off, by the quality that is chosen."""
     quality = values["quality"]
     return QUALITIES[quality] if quality in QUALITIES else decimal(values["tolerance"])
-
-
-def _wind(values: Values, vertices: Sequence[int] | None) -> dict[str, Any] | None:
-    velocity = [decimal(value) for value in values["wind_velocity"]]
-    if not values["use_wind"] or vertices == []:
-        return None
-    wind: dict[str, Any] = {"kind": "wind", "velocity": velocity}
-    if values["wind_law"] == "vertex":
-        wind["coefficient"] = decimal(values["wind_coefficient"])
-    else:
-        wind["air_density"] = decimal(values["wind_air_density"])
-    if vertices is not None:
-        wind["region"] = {"vertices": list(vertices)}
-    return wind

@@ -17,6 +17,7 @@ from . import (
     springs,
     tailoring,
     takes,
+    water,
 )
 
 _PARENTS = (
@@ -40,6 +41,7 @@ _OTHERS = (
     result,
     tailoring,
     takes,
+    water,
 )
 
 CLASSES = tuple(cls for module in (*_PARENTS, *_OTHERS) for cls in module.CLASSES)

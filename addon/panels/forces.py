@@ -31,6 +31,19 @@ class BOUCLE_PT_forces(PhysicsPanel, Panel):
             wind.prop(settings, "wind_coefficient", text="Drag (N·s/m)")
         else:
             wind.prop(settings, "wind_air_density", text="Density (kg/m³)")
+            wind.prop(settings, "wind_drag")
+            wind.prop(settings, "use_wind_lift")
+            if settings.use_wind_lift:
+                wind.prop(settings, "wind_lift")
+        wind.prop(settings, "wind_gusts")
+        if settings.wind_gusts > 0.0:
+            wind.prop(settings, "wind_gust_period", text="Period (s)")
+        wind.prop(settings, "wind_turbulence")
+        if settings.wind_turbulence > 0.0:
+            wind.prop(settings, "wind_turbulence_size", text="Size (m)")
+        if settings.wind_gusts > 0.0 or settings.wind_turbulence > 0.0:
+            wind.prop(settings, "wind_seed", text="Seed")
+        wind.prop(settings, "use_wind_shelter")
         wind.prop_search(settings, "wind_group", obj, "vertex_groups")
 
 

@@ -22,6 +22,7 @@ from .solver import SolverProperties
 from .springs import SpringProperties
 from .steps import StepProperties
 from .takes import BOUCLE_PG_take, TakeProperties
+from .water import WaterProperties
 
 
 class BOUCLE_PG_cloth(
@@ -35,6 +36,7 @@ class BOUCLE_PG_cloth(
     SewingProperties,
     CollisionProperties,
     ForceProperties,
+    WaterProperties,
     FieldWeightProperties,
     SolverProperties,
     StepProperties,

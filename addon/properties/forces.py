@@ -1,6 +1,13 @@
 """Wind. Gravity is the scene's."""
 
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    StringProperty,
+)
 
 from .changes import FIXED, OVERRIDABLE, changed
 
@@ -39,6 +46,59 @@ class ForceProperties:
         description="Density of the air (kg/m³)",
         default=1.2, min=0.0, max=1e6, soft_max=10.0, precision=3, step=1,
         override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    wind_drag: FloatProperty(
+        name="Drag Coefficient",
+        description="Force on a face across the wind, as a part of the pressure of stopped air; about 1.2 for a plate "
+        "(fraction)",
+        default=1.0, min=0.0, max=1000.0, soft_max=2.0, precision=3, step=1,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    use_wind_lift: BoolProperty(
+        name="Lift",
+        description="Part the force on each face into drag along the wind and lift across it; else the air presses along "
+        "the normal alone",
+        default=False, options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    wind_lift: FloatProperty(
+        name="Lift Coefficient",
+        description="Force across the wind on a face that is inclined to it, as a part of the same pressure (fraction)",
+        default=1.0, min=0.0, max=1000.0, soft_max=2.0, precision=3, step=1,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    wind_gusts: FloatProperty(
+        name="Gusts",
+        description="By how much of its velocity the wind grows in a gust at the most; 0 for a steady wind (fraction)",
+        default=0.0, min=0.0, max=100.0, soft_max=2.0, precision=3, step=1,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    wind_gust_period: FloatProperty(
+        name="Gust Period",
+        description="How long each gust is (s)",
+        default=2.0, min=0.01, max=1e6, soft_max=20.0, precision=3, step=1,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    wind_turbulence: FloatProperty(
+        name="Turbulence",
+        description="Spread of the wind's velocity from place to place, as a part of it; 0.1 to 0.3 near the ground (fraction)",
+        default=0.0, min=0.0, max=10.0, soft_max=1.0, precision=3, step=1,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    wind_turbulence_size: FloatProperty(
+        name="Turbulence Size",
+        description="Size of the largest eddies (m)",
+        default=1.0, min=0.001, max=1e6, soft_max=10.0, precision=3, step=1,
+        override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    wind_seed: IntProperty(
+        name="Wind Seed",
+        description="Chooses the random gusts and eddies",
+        default=1, min=0, max=2**31 - 1, options=FIXED, override=OVERRIDABLE, update=changed,
+    )  # fmt: skip
+    use_wind_shelter: BoolProperty(
+        name="Shelter",
+        description="The air is still behind objects that the cloth collides with",
+        default=False, options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     wind_group: StringProperty(
         name="Wind Group",

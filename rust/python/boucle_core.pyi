@@ -144,8 +144,8 @@ class Simulation:
         """Take these force fields in the place of those before, for all frames until they are told anew.
 
         Args:
-            fields: A JSON list of tables with the keys of a scene's `[[force]]`, of any kind but "wind". Fields stand still
-                during a frame.
+            fields: A JSON list of tables with the keys of a scene's `[[force]]`, of any kind but "wind" and "water". Fields
+                stand still during a frame.
 
         Raises:
             SceneError: A key or a value is not accepted; the fields before then stay.
@@ -160,6 +160,17 @@ class Simulation:
 
         Raises:
             SceneError: There is no such wind, or the velocity is not accepted; the one before then stays.
+        """
+
+    def set_water(self, level: float, velocity: tuple[float, float, float]) -> None:
+        """Put the calm surface of the scene's water at a height, and let its current flow so, from the next frame on.
+
+        Args:
+            level: Height (m) in world space.
+            velocity: Of the current (m/s), up to 1000 along an axis.
+
+        Raises:
+            SceneError: The scene has no water, or a number is not accepted; what was before then stays.
         """
 
     def set_gravity(self, gravity: tuple[float, float, float]) -> None:
@@ -230,6 +241,9 @@ class Simulation:
 
         Stretch and shear springs count, and what implicit steps add to hold an edge at its allowed length; not damping.
         """
+
+    def read_wetness(self, cloth: int, out: Buffer) -> None:
+        """Fill out, float32 (n,), with how wet each vertex is: 0 dry to 1 as wet as its absorbency allows."""
 
     def read_contacts(self, cloth: int, out: Buffer) -> None:
         """Fill out, float32 (n,), with the force (N) with which contacts press each vertex."""

@@ -14,6 +14,7 @@ CHAPTERS = {
     "bending": "Fabric that bends",
     "waves": "Standing waves of fabric",
     "dynamics": "Cloth in motion",
+    "flows": "Cloth in wind and water",
     "laws": "What every law keeps",
     "friction_contact": "Friction and contact",
     "drape": "Drape of named fabrics",
@@ -22,10 +23,6 @@ CHAPTERS = {
 """Names as `--only` takes them, and headings. A chapter is the module of its name."""
 
 NOT_MEASURED = [
-    (
-        "Buoyancy and drag in water",
-        "Not built yet: there is no water. It will be measured when there is.",
-    ),
     (
         "Hessian = derivative of the force",
         "The module shows no Hessian. Rust tests hold it by central differences: "

@@ -5,6 +5,7 @@ use boucle_solver::{Cloth, Collider};
 use pyo3::prelude::*;
 
 use crate::boundary::{compute, raise_internal, refuse};
+use crate::buffers;
 use crate::simulation::Simulation;
 
 impl Simulation {
@@ -26,6 +27,19 @@ impl Simulation {
             self.assembly = taken;
         }
         outcome
+    }
+
+    /// Fills `out` with a number for each vertex of a cloth.
+    pub(crate) fn read_numbers(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        out: &Bound<'_, PyAny>,
+        of: fn(&boucle_solver::Simulation, usize) -> Vec<f32>,
+    ) -> PyResult<()> {
+        let index = self.cloth(py, cloth)?.0;
+        let numbers = self.with(py, |assembly| Ok(of(&assembly.simulation, index)))?;
+        buffers::write_numbers(out, &numbers, "float32")
     }
 
     pub(crate) fn assembly(&self, py: Python<'_>) -> PyResult<&Assembly> {

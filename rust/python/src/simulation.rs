@@ -183,6 +183,11 @@ impl Simulation {
         self.with(py, |assembly| Ok(assembly.simulation.set_wind_velocity(wind, to)?))
     }
 
+    fn set_water(&mut self, py: Python<'_>, level: f64, velocity: [f64; 3]) -> PyResult<()> {
+        let current = Vector::from(velocity);
+        self.with(py, |assembly| Ok(assembly.simulation.set_water(level, current)?))
+    }
+
     fn set_gravity(&mut self, py: Python<'_>, gravity: [f64; 3]) -> PyResult<()> {
         self.with(py, |assembly| Ok(assembly.simulation.set_gravity(Vector::from(gravity))?))
     }
@@ -301,15 +306,17 @@ impl Simulation {
     }
 
     fn read_strain(&mut self, py: Python<'_>, cloth: i64, out: &Bound<'_, PyAny>) -> PyResult<()> {
-        let index = self.cloth(py, cloth)?.0;
-        let strain = self.with(py, |assembly| Ok(assembly.simulation.vertex_strain(index)))?;
-        buffers::write_numbers(out, &strain, "float32")
+        self.read_numbers(py, cloth, out, boucle_solver::Simulation::vertex_strain)
     }
 
     fn read_tension(&mut self, py: Python<'_>, cloth: i64, out: &Bound<'_, PyAny>) -> PyResult<()> {
-        let index = self.cloth(py, cloth)?.0;
-        let tension = self.with(py, |assembly| Ok(assembly.simulation.vertex_tension(index)))?;
-        buffers::write_numbers(out, &tension, "float32")
+        self.read_numbers(py, cloth, out, boucle_solver::Simulation::vertex_tension)
+    }
+
+    fn read_wetness(&mut self, py: Python<'_>, cloth: i64, out: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.read_numbers(py, cloth, out, |simulation, cloth| {
+            simulation.wetness(cloth).into_iter().map(|part| part as f32).collect()
+        })
     }
 
     fn read_contacts(
@@ -318,9 +325,7 @@ impl Simulation {
         cloth: i64,
         out: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        let index = self.cloth(py, cloth)?.0;
-        let forces = self.with(py, |assembly| Ok(assembly.simulation.vertex_contacts(index)))?;
-        buffers::write_numbers(out, &forces, "float32")
+        self.read_numbers(py, cloth, out, boucle_solver::Simulation::vertex_contacts)
     }
 
     fn read_intersections(
@@ -329,10 +334,7 @@ impl Simulation {
         cloth: i64,
         out: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        let index = self.cloth(py, cloth)?.0;
-        let counts =
-            self.with(py, |assembly| Ok(assembly.simulation.vertex_intersections(index)))?;
-        buffers::write_numbers(out, &counts, "float32")
+        self.read_numbers(py, cloth, out, boucle_solver::Simulation::vertex_intersections)
     }
 
     fn overstretched_edges(

@@ -78,15 +78,20 @@ impl Assembly {
             .map(|(description, rest)| ColliderTrack::new(description, rest, first_frame))
             .unzip();
         let names: Vec<&str> = scene.cloth.iter().map(|cloth| cloth.name.as_str()).collect();
-        let (mut winds, mut fields) = (Vec::new(), Vec::new());
+        let (mut winds, mut fields, mut water) = (Vec::new(), Vec::new(), None);
         for (index, force) in scene.force.iter().enumerate() {
             let at = format!("force.{index}");
             winds.extend(force.wind(&at, &names)?);
             fields.extend(force.field(&at)?);
+            water = water.or(force.water(&at)?);
         }
-        let mut simulation =
-            Simulation::with_colliders(cloths, colliders, winds, settings(scene, threads))
-                .map_err(solver)?;
+        let mut simulation = Simulation::with_colliders(
+            cloths,
+            colliders,
+            winds,
+            Settings { water, ..settings(scene, threads) },
+        )
+        .map_err(solver)?;
         simulation.set_fields(fields).map_err(solver)?;
         for (index, description) in scene.cloth.iter().enumerate() {
             let velocity = Vector::from(description.velocity);
@@ -170,6 +175,7 @@ fn settings(scene: &Scene, threads: usize) -> Settings {
         perturbation: PERTURBATION,
         allow_unstable: scene.solver.allow_unstable,
         threads,
+        ..Settings::default()
     }
 }
 
@@ -226,8 +232,8 @@ fn cloth(
     })?;
     let pressure = description.pressure.as_ref();
     let pressure = pressure.map(|pressure| pressure.pressure(scene.scene.frames[0]));
-    let pin_material = description.pin_material();
-    Ok(Cloth { collision, pin_weights, pin_material, pressure, ..cloth })
+    let (pin_material, bulk) = (description.pin_material(), description.water.bulk());
+    Ok(Cloth { collision, pin_weights, pin_material, pressure, bulk, ..cloth })
 }
 
 /// A fabric whose warp follows the UV coordinates of its mesh, if it is to.

@@ -1,6 +1,5 @@
 //! What a frame can be held to: strain, energy and a hash of every position bit.
 
-use boucle_geometry::Vector;
 use xxhash_rust::xxh3::Xxh3;
 
 use crate::cloth::Placed;
@@ -8,6 +7,7 @@ use crate::law::spring::Law;
 use crate::material::SpringKind;
 use crate::sewing::energy;
 use crate::state::State;
+use crate::system::System;
 
 /// The certificate of one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,13 +43,13 @@ pub struct Certificate {
 pub(crate) fn certify<'a>(
     cloths: impl Iterator<Item = Placed<'a>> + Clone,
     state: &State,
-    gravity: &Vector,
+    system: &System,
     frame: i32,
     substeps: u32,
 ) -> Certificate {
     let mut stretch = strains(cloths.clone(), state, SpringKind::Stretch);
     let shear = strains(cloths.clone(), state, SpringKind::Shear);
-    let (kinetic_energy, potential_energy) = energies(cloths.clone(), state, gravity);
+    let (kinetic_energy, potential_energy) = energies(cloths.clone(), state, system);
     Certificate {
         frame,
         substeps,
@@ -97,15 +97,15 @@ fn percentile(values: &mut [f64], part: f64) -> f64 {
 fn energies<'a>(
     cloths: impl Iterator<Item = Placed<'a>>,
     state: &State,
-    gravity: &Vector,
+    system: &System,
 ) -> (f64, f64) {
     let (mut kinetic, mut potential) = (0.0, 0.0);
     for (cloth, base) in cloths {
         let law = Law::of(cloth);
-        for (vertex, mass) in cloth.masses.iter().enumerate() {
-            let particle = base as usize + vertex;
+        for particle in base as usize..base as usize + cloth.masses.len() {
+            let mass = system.masses[particle];
             kinetic += 0.5 * mass * state.velocity.get(particle).norm_squared();
-            potential -= mass * gravity.dot(&state.position.get(particle));
+            potential -= mass * system.gravity.dot(&state.position.get(particle));
         }
         let force_max = cloth.tailoring.sewing.as_ref().map_or(0.0, |sewing| sewing.force_max);
         for spring in &cloth.springs {

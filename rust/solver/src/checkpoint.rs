@@ -5,7 +5,8 @@
 //! | positions and velocities, f64, axis by axis
 //! | pins u64 | weight, target, goal of each, f64 | cloths u64 | stiffness of their pins, f64
 //! | grabbed u64 | particle, stiffness, damping, goal, target of each, f64
-//! | gravity, f64 | winds u64 | velocity of each, f64 | force fields u64 | numbers of each, f64
+//! | gravity, f64 | winds u64 | velocity and drift of each, f64 | force fields u64 | numbers of each, f64
+//! | water u64 | level, current and drift, f64 | wetness of each particle that soaks, f64
 //! | points of colliders u64 | their positions, f64, point by point
 //! | the same where they are to be next; no points if they stay
 //! | numbers of the shape u64 | those, f64: rest lengths, pressures, welded seams, creases
@@ -28,7 +29,7 @@ use crate::pins::Held;
 use crate::state::State;
 
 const MAGIC: &[u8; 8] = b"BOUCLECK";
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 const HEADER: usize = 36;
 
 /// What a checkpoint holds.
@@ -45,9 +46,11 @@ pub(crate) struct Checkpoint {
     pub(crate) grab: Grab,
     /// (m/s²)
     pub(crate) gravity: Vector,
-    /// Velocities (m/s).
-    pub(crate) winds: Vec<Vector>,
+    /// Velocities (m/s), and how far winds have come (m).
+    pub(crate) winds: Vec<[Vector; 2]>,
     pub(crate) fields: Vec<Field>,
+    /// Level, current, drift and wetness; nothing without water.
+    pub(crate) water: Vec<f64>,
     /// Where the points of colliders are (m), and where they are to be at the end of the next frame.
     pub(crate) colliders: [Vec<Vector>; 2],
     /// Rest lengths, pressures, welded seams and creases.
@@ -85,8 +88,9 @@ impl Checkpoint {
         bytes.extend(self.gravity.iter().flat_map(|number| number.to_le_bytes()));
         let mut write =
             |count, numbers: &mut dyn Iterator<Item = f64>| write(bytes, count, numbers);
-        write(self.winds.len(), &mut self.winds.iter().flatten().copied());
+        write(self.winds.len(), &mut self.winds.iter().flatten().flatten().copied());
         write(self.fields.len(), &mut self.fields.iter().flat_map(Field::to_numbers));
+        write(self.water.len(), &mut self.water.iter().copied());
         let [from, to] = &self.colliders;
         let to = if from == to { &[][..] } else { to };
         for points in [from, to] {
@@ -123,7 +127,7 @@ impl Checkpoint {
             return Err(damaged());
         }
         if reader.take().map(u32::from_le_bytes) != Some(VERSION) {
-            return Err(Error::BadCheckpoint("is of another version; accepted: version 5"));
+            return Err(Error::BadCheckpoint("is of another version; accepted: version 6"));
         }
         Self::read_body(&mut reader).ok_or_else(damaged)
     }
@@ -151,9 +155,14 @@ impl Checkpoint {
         });
         let grab = Grab { goals: goals.collect() };
         let gravity = Vector::from(reader.three()?);
-        let winds = reader.vectors()?;
+        let winds = reader.rows()?;
+        let winds = winds
+            .iter()
+            .map(|&[x, y, z, dx, dy, dz]| [Vector::new(x, y, z), Vector::new(dx, dy, dz)]);
+        let winds = winds.collect();
         let fields = reader.rows::<FIELD_NUMBERS>()?;
         let fields = fields.iter().map(Field::from_numbers).collect::<Option<_>>()?;
+        let water = reader.numbers()?;
         let [from, to] = [reader.vectors()?, reader.vectors()?];
         let to = if to.is_empty() { from.clone() } else { to };
         let shape = reader.numbers()?;
@@ -170,6 +179,7 @@ impl Checkpoint {
             gravity,
             winds,
             fields,
+            water,
             colliders: [from, to],
             shape,
             memory,
@@ -281,8 +291,9 @@ mod tests {
             pin_stiffness,
             grab,
             gravity: Vector::new(0.5, 0.0, -9.81),
-            winds: vec![Vector::new(0.0, 3.0, -1.0)],
+            winds: vec![[Vector::new(0.0, 3.0, -1.0), Vector::new(0.5, 6.0, -2.0)]],
             fields,
+            water: vec![0.5, 1.0, 0.25],
             colliders,
             shape,
             memory,

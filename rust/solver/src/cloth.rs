@@ -3,9 +3,10 @@
 use boucle_geometry::{Mesh, Vector};
 
 use crate::collision::Collision;
+use crate::contact::facing;
 use crate::error::{Error, Result, bad_mesh};
 use crate::fabric::{Fabric, Warp, edges};
-use crate::force::Pressure;
+use crate::force::{Bulk, Pressure};
 use crate::law::{Spring, springs_of_mesh};
 use crate::material::{PinMaterial, SpringMaterial, within_one};
 use crate::tailoring::Tailoring;
@@ -54,6 +55,8 @@ pub struct Cloth {
     pub tailoring: Tailoring,
     /// What it is inflated by.
     pub pressure: Option<Pressure>,
+    /// How it meets water.
+    pub bulk: Bulk,
 }
 
 /// A cloth and the number of its first particle.
@@ -108,6 +111,7 @@ impl Cloth {
             collision: None,
             tailoring: Tailoring::default(),
             pressure: None,
+            bulk: Bulk::default(),
         };
         cloth.check()?;
         Ok(cloth)
@@ -145,6 +149,18 @@ impl Cloth {
         faces.map(|face| self.mesh.vector_area(face, self.rest()).norm()).sum()
     }
 
+    /// Area (m²) at rest of each vertex: equal shares of its faces.
+    pub(crate) fn vertex_areas(&self) -> Vec<f64> {
+        let mut areas = vec![0.0; self.positions.len()];
+        for (face, corners) in self.mesh.faces().enumerate() {
+            let share = self.mesh.vector_area(face, self.rest()).norm() / corners.len() as f64;
+            for &corner in corners {
+                areas[corner as usize] += share;
+            }
+        }
+        areas
+    }
+
     /// Refuses a cloth that cannot be simulated.
     ///
     /// # Errors
@@ -157,6 +173,12 @@ impl Cloth {
         self.check_tailoring()?;
         if let Some(pressure) = &self.pressure {
             pressure.check(&self.name, self.positions.len())?;
+        }
+        self.bulk.check(&self.name)?;
+        if self.bulk.is_hull == Some(true) && facing(&self.mesh, self.rest()) == 0.0 {
+            let reason =
+                "hull is true, but its mesh has a border; accepted: a closed mesh, or false";
+            return self.refuse(reason.to_owned());
         }
         let count = self.positions.len();
         if self.masses.len() != count {

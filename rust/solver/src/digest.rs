@@ -24,7 +24,9 @@ pub(crate) fn digest(
             format!("{:?} {:?} {:?}", cloth.material, cloth.pins, cloth.collision).as_bytes(),
         );
         hasher.update(format!("{:?}", cloth.fabric).as_bytes());
-        hasher.update(format!("{:?} {:?}", cloth.tailoring, cloth.pressure).as_bytes());
+        hasher.update(
+            format!("{:?} {:?} {:?}", cloth.tailoring, cloth.pressure, cloth.bulk).as_bytes(),
+        );
         hasher.update(format!("{:?} {:?}", cloth.pin_weights, cloth.pin_material).as_bytes());
         for spring in &cloth.springs {
             let [a, b] = spring.ends;

@@ -56,8 +56,8 @@ pub use contact::Detection;
 pub use error::{Error, Result};
 pub use fabric::{Fabric, Warp};
 pub use force::{
-    Falloff, FalloffShape, Field, FieldKind, FieldShape, Pressure, Range, Region, Side, Wind,
-    WindLaw,
+    Bulk, Falloff, FalloffShape, Field, FieldKind, FieldShape, Flow, Gusts, Pressure, Range,
+    Region, Side, Turbulence, Water, Wave, Wind, WindLaw,
 };
 pub use interrupter::Interrupter;
 pub use law::{Spring, springs_of_mesh};

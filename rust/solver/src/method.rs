@@ -2,7 +2,6 @@
 
 use crate::cloth::Cloth;
 use crate::contact::{Contacts, Response};
-use crate::fabric::Fabrics;
 use crate::implicit::{Implicit, Memory, Rule};
 use crate::integrator::{Integrator, Scratch, explicit};
 use crate::interrupter::Interrupter;
@@ -60,6 +59,13 @@ impl Method {
         }
     }
 
+    /// Follows a change of the particles' masses.
+    pub(crate) fn follow_masses(&mut self) {
+        if let Self::Implicit(implicit) = self {
+            implicit.follow_masses();
+        }
+    }
+
     /// The edges that implicit steps can hold at their allowed length, cloth by cloth in the order of their springs, and the
     /// tension (N) that does it now.
     pub(crate) fn held_edges(&self) -> impl Iterator<Item = ([u32; 2], f64)> {
@@ -78,9 +84,9 @@ impl Method {
     }
 
     /// Takes the present stiffness of the cloths' springs.
-    pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth], fabrics: &Fabrics) {
+    pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth], system: &System) {
         if let Self::Implicit(implicit) = self {
-            implicit.follow_stiffness(cloths, fabrics);
+            implicit.follow_stiffness(cloths, system);
         }
     }
 

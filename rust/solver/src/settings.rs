@@ -3,6 +3,7 @@
 use boucle_geometry::Vector;
 
 use crate::error::{Error, Result};
+use crate::force::Water;
 
 /// Most substeps a frame may take.
 pub const MOST_SUBSTEPS: u32 = 200_000;
@@ -102,6 +103,8 @@ pub struct Settings {
     pub fps: f64,
     /// The frame at which the cloths are at rest.
     pub first_frame: i32,
+    /// The water, if there is any.
+    pub water: Option<Water>,
     /// Which rule moves the particles.
     pub integrator: IntegratorKind,
     /// How a frame is cut into steps.
@@ -126,6 +129,7 @@ impl Default for Settings {
             gravity: Vector::new(0.0, 0.0, -9.81),
             fps: 24.0,
             first_frame: 1,
+            water: None,
             integrator: IntegratorKind::default(),
             step_size: StepSize::default(),
             tolerance: 5e-3,
@@ -158,6 +162,7 @@ impl Settings {
         within("perturbation", self.perturbation, "0 to 0.01", is_small)?;
         let is_tolerance = (1e-6..=1.0).contains(&self.tolerance);
         within("tolerance", self.tolerance, "1e-6 to 1", is_tolerance)?;
+        self.water.as_ref().map_or(Ok(()), Water::check)?;
         match self.step_size {
             StepSize::Auto => Ok(()),
             StepSize::Substeps(count) => {

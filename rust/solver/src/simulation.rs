@@ -140,7 +140,7 @@ impl Simulation {
             .thread_name(|index| format!("boucle-{index}"))
             .build()
             .map_err(|_| Error::Threads(settings.threads))?;
-        let system = System::new(&cloths, winds, settings.gravity);
+        let system = System::new(&cloths, winds, settings.water.clone(), settings.gravity);
         let interrupter = Interrupter::default();
         let mut simulation = Self {
             pins: Pins::new(&cloths, &state),
@@ -211,7 +211,7 @@ impl Simulation {
     /// [`Error::TooManySubsteps`] and [`Error::Unstable`] leave the state as it is.
     pub fn advance(&mut self) -> Result<Certificate> {
         self.gather_goals();
-        self.system.air.start_frame(self.frame);
+        self.start_flows();
         let mut substeps = self.plan()?;
         self.keep();
         let mut outcome = self.run(substeps, false);
@@ -235,6 +235,7 @@ impl Simulation {
             return Err(self.diverged(first));
         }
         self.frame += 1;
+        self.end_flows();
         self.end_shape();
         self.end_holds();
         self.contacts.end_frame();
@@ -297,6 +298,7 @@ impl Simulation {
                     }
                     self.shape(f64::from(substep) / f64::from(substeps), false);
                     self.system.goals.start_step(substep, substeps);
+                    self.system.air.start_step(f64::from(substep) * h);
                     let Self { system, pins, contacts, limits, state, method, interrupter, .. } =
                         &mut *self;
                     let (number, count, interrupter) = (substep, substeps, &*interrupter);

@@ -1,7 +1,7 @@
 //! The forces on all particles, and the one way to use them: all are computed before any particle moves.
 //!
 //! ```text
-//! a_i = g + (sum of springs + goals + wind, fields and pressure - ka v_i) / m_i   (m/s²)   for a particle that is free
+//! a_i = g + (sum of springs + goals + wind, fields, pressure and water - ka v_i) / m_i   (m/s²)   for a particle that is free
 //! a_i = 0                                                                           for one that is pinned
 //! ```
 
@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 use crate::cloth::Cloth;
 use crate::fabric::{FabricScratch, Fabrics};
-use crate::force::{Air, AirScratch, Wind};
+use crate::force::{Air, AirScratch, Water, Wind};
 use crate::goals::Goals;
 use crate::kernel::{BLOCK, CHUNK, Layout, Sums, add_from_inside, add_from_outside};
 use crate::state::State;
@@ -70,7 +70,12 @@ pub(crate) enum Rate {
 }
 
 impl System {
-    pub(crate) fn new(cloths: &[Cloth], winds: Vec<Wind>, gravity: Vector) -> Self {
+    pub(crate) fn new(
+        cloths: &[Cloth],
+        winds: Vec<Wind>,
+        water: Option<Water>,
+        gravity: Vector,
+    ) -> Self {
         let masses: Vec<f64> = cloths.iter().flat_map(|cloth| cloth.masses.clone()).collect();
         let air_damping = cloths
             .iter()
@@ -78,7 +83,7 @@ impl System {
         Self {
             layout: Layout::new(cloths),
             fabrics: Fabrics::new(cloths),
-            air: Air::new(winds, cloths),
+            air: Air::new(winds, water, cloths, &gravity),
             gravity,
             goals: Goals::default(),
             inverse_masses: masses.iter().map(|mass| 1.0 / mass).collect(),
@@ -99,6 +104,24 @@ impl System {
     /// Whether anything keeps a particle in its place, hard or soft.
     pub(crate) fn is_held(&self, particle: usize) -> bool {
         self.is_pinned(particle) || self.goals.draw(particle as u32)
+    }
+
+    /// Takes this gravity (m/s²).
+    pub(crate) fn set_gravity(&mut self, gravity: Vector) {
+        self.gravity = gravity;
+        self.air.set_gravity(&gravity);
+    }
+
+    /// Weighs all particles anew with the water that they have taken up; cloths say what they are dry.
+    pub(crate) fn weigh(&mut self, cloths: &[Cloth]) {
+        let Some(sea) = &self.air.sea else { return };
+        let dry: Vec<f64> = cloths.iter().flat_map(|cloth| cloth.masses.iter().copied()).collect();
+        for (particle, heavier) in sea.heavier() {
+            self.masses[particle] = dry[particle] * heavier;
+            if self.inverse_masses[particle] > 0.0 {
+                self.inverse_masses[particle] = 1.0 / self.masses[particle];
+            }
+        }
     }
 
     pub(crate) fn set_pinned(&mut self, particle: usize, is_pinned: bool) {

@@ -13,17 +13,12 @@ use serde::{Deserialize, Serialize, Serializer};
 pub(crate) trait Choice: Copy + PartialEq + 'static {
     /// The words that are taken, and what they mean.
     const WORDS: &'static [(&'static str, Self)];
-    /// Words of the format that later versions take.
-    const LATER: &'static [&'static str] = &[];
 
     /// Reads the word.
     fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let word = String::deserialize(deserializer)?;
         match Self::WORDS.iter().find(|(name, _)| *name == word) {
             Some((_, choice)) => Ok(*choice),
-            None if Self::LATER.contains(&word.as_str()) => {
-                Err(D::Error::custom(format!(" is not supported yet; {}", accepted::<Self>(&word))))
-            }
             None => Err(D::Error::custom(format!("; {}", accepted::<Self>(&word)))),
         }
     }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::choice::Choice;
 use super::collision::ClothCollision;
 use super::fabric::{FabricDescription, WarpDescription};
+use super::flow::ClothWater;
 use super::pins::Pins;
 use super::shape::{PressureDescription, SewingDescription, Shrink};
 use super::springs::Springs;
@@ -54,6 +55,9 @@ pub struct ClothDescription {
     /// `[cloth.pressure]`.
     #[serde(default, deserialize_with = "table::optional")]
     pub pressure: Option<PressureDescription>,
+    /// `[cloth.water]`.
+    #[serde(default, deserialize_with = "table::one")]
+    pub water: ClothWater,
     /// `[cloth.sewing]`.
     #[serde(default, deserialize_with = "table::optional")]
     pub sewing: Option<SewingDescription>,

@@ -1,13 +1,15 @@
-//! `[[force]]`: what pushes the cloth besides gravity. Wind, and force fields ([`super::field`]).
+//! `[[force]]`: what pushes the cloth besides gravity. Wind and water ([`super::flow`]), and force fields ([`super::field`]).
 
 use boucle_geometry::{Aabb, Vector};
-use boucle_solver::{Field, FieldShape, Region, Wind, WindLaw};
+use boucle_solver::{Field, FieldShape, Region, Water, Wind};
 use serde::{Deserialize, Serialize};
-use toml::Value;
 
 use super::check_known;
 use super::choice::Choice;
 use super::field::{FalloffDescription, field_of};
+use super::flow::{
+    GustsDescription, TurbulenceDescription, WaveDescription, law_of, water_of, weather_of,
+};
 use super::table;
 use crate::error::{Error, Result};
 use crate::limits;
@@ -24,12 +26,33 @@ pub struct Force {
     /// Which force.
     #[serde(deserialize_with = "Choice::read", serialize_with = "Choice::write")]
     pub kind: ForceKind,
-    /// Wind: velocity (m/s) of the air.
+    /// Wind: mean velocity (m/s) of the air. Water: of its current; at rest if missing.
     pub velocity: Option<[f64; 3]>,
     /// Wind: the classic law by vertex normal (N·s/m).
     pub coefficient: Option<f64>,
     /// Wind: pressure on faces, by the density (kg/m³) of the air.
     pub air_density: Option<f64>,
+    /// By face: drag coefficient; 1 if missing.
+    pub drag_coefficient: Option<f64>,
+    /// By face: lift coefficient; pressure along the normal alone if missing.
+    pub lift_coefficient: Option<f64>,
+    /// By face: friction coefficient of both sides; none in air and 0.01 in water if missing.
+    pub friction_coefficient: Option<f64>,
+    /// Wind: gusts.
+    #[serde(default, deserialize_with = "table::optional")]
+    pub gusts: Option<GustsDescription>,
+    /// Wind: turbulence.
+    #[serde(default, deserialize_with = "table::optional")]
+    pub turbulence: Option<TurbulenceDescription>,
+    /// Wind: still air behind colliders.
+    pub shelter: Option<bool>,
+    /// Water: height (m) of the calm surface; 0 if missing.
+    pub level: Option<f64>,
+    /// Water: its density (kg/m³); 1000 if missing.
+    pub density: Option<f64>,
+    /// Water: waves on it.
+    #[serde(default, deserialize_with = "table::list")]
+    pub waves: Vec<WaveDescription>,
     /// Where wind blows; everywhere if missing.
     #[serde(default, deserialize_with = "table::optional")]
     pub region: Option<RegionDescription>,
@@ -74,6 +97,8 @@ pub struct Force {
 pub enum ForceKind {
     /// Moving air.
     Wind,
+    /// Water up to a surface.
+    Water,
     /// A field.
     Field(FieldWord),
 }
@@ -100,6 +125,7 @@ pub enum FieldWord {
 impl Choice for ForceKind {
     const WORDS: &'static [(&'static str, Self)] = &[
         ("wind", Self::Wind),
+        ("water", Self::Water),
         ("point", Self::Field(FieldWord::Point)),
         ("wind_field", Self::Field(FieldWord::Wind)),
         ("vortex", Self::Field(FieldWord::Vortex)),
@@ -108,7 +134,6 @@ impl Choice for ForceKind {
         ("harmonic", Self::Field(FieldWord::Harmonic)),
         ("magnetic", Self::Field(FieldWord::Magnetic)),
     ];
-    const LATER: &'static [&'static str] = &["water"];
 }
 
 /// Where a force acts: a box of the world, or a cloth, or vertices of that or of every cloth.
@@ -124,7 +149,7 @@ pub struct RegionDescription {
 }
 
 impl Force {
-    /// The steady wind that it is, as the solver takes it, among cloths of these names; `None` for a field.
+    /// The wind that it is, as the solver takes it, among cloths of these names; `None` for another force.
     ///
     /// # Errors
     /// When its keys do not make one law.
@@ -137,10 +162,21 @@ impl Force {
         };
         let region =
             self.region.as_ref().map_or(Region::Everywhere, |region| region.region(cloths));
-        Ok(Some(Wind { velocity: Vector::from(velocity), law: self.law(at)?, region }))
+        let (gusts, turbulence) = weather_of(self);
+        let (law, is_sheltered) = (law_of(self, at)?, self.shelter.unwrap_or_default());
+        let velocity = Vector::from(velocity);
+        Ok(Some(Wind { velocity, law, region, gusts, turbulence, is_sheltered }))
     }
 
-    /// The field that it is; `None` for a steady wind.
+    /// The water that it is; `None` for another force.
+    ///
+    /// # Errors
+    /// When a value is out of its domain.
+    pub fn water(&self, at: &str) -> Result<Option<Water>> {
+        if self.kind == ForceKind::Water { water_of(self, at).map(Some) } else { Ok(None) }
+    }
+
+    /// The field that it is; `None` for another force.
     ///
     /// # Errors
     /// When a value is out of its domain.
@@ -149,26 +185,16 @@ impl Force {
         field_of(word, self, at).map(Some)
     }
 
-    fn law(&self, at: &str) -> Result<WindLaw> {
-        match (self.coefficient, self.air_density) {
-            (Some(coefficient), None) => Ok(WindLaw::Vertex { coefficient }),
-            (None, Some(air_density)) => Ok(WindLaw::Face { air_density }),
-            (None, None) => Err(Error::input(format!(
-                "{at}.coefficient is missing; accepted: it or air_density"
-            ))),
-            (Some(_), Some(_)) => Err(Error::input(format!(
-                "{at}: coefficient and air_density; accepted: one of the two"
-            ))),
-        }
-    }
-
     pub(super) fn check(&self, at: &str, cloths: &[&str]) -> Result<()> {
         self.refuse_foreign_keys(at)?;
         self.field(at)?;
+        self.water(at)?;
         if let Some(velocity) = &self.velocity {
             limits::vector(&format!("{at}.velocity"), velocity, MAX_SPEED, " m/s")?;
         }
-        self.wind(at, cloths)?;
+        if let Some(wind) = self.wind(at, cloths)? {
+            wind.check_weather().map_err(|error| Error::input(format!("{at}: {error}")))?;
+        }
         let numbers = [("coefficient", self.coefficient), ("air_density", self.air_density)];
         for (key, value) in numbers {
             if let Some(value) = value {
@@ -195,15 +221,25 @@ impl Force {
     }
 
     /// Every key but the kind: whether it is given, and whether forces of this kind have it.
-    fn keys(&self) -> [(&'static str, bool, bool); 20] {
+    fn keys(&self) -> [(&'static str, bool, bool); 29] {
         use FieldWord::{Drag, Harmonic, Point, Turbulence};
-        let is_field = self.kind != ForceKind::Wind;
+        let is_field = matches!(self.kind, ForceKind::Field(_));
+        let (is_wind, is_water) = (self.kind == ForceKind::Wind, self.kind == ForceKind::Water);
         let is = |word| self.kind == ForceKind::Field(word);
         [
             ("velocity", self.velocity.is_some(), !is_field),
-            ("coefficient", self.coefficient.is_some(), !is_field),
-            ("air_density", self.air_density.is_some(), !is_field),
-            ("region", self.region.is_some(), !is_field),
+            ("coefficient", self.coefficient.is_some(), is_wind),
+            ("air_density", self.air_density.is_some(), is_wind),
+            ("drag_coefficient", self.drag_coefficient.is_some(), !is_field),
+            ("lift_coefficient", self.lift_coefficient.is_some(), !is_field),
+            ("friction_coefficient", self.friction_coefficient.is_some(), !is_field),
+            ("region", self.region.is_some(), is_wind),
+            ("gusts", self.gusts.is_some(), is_wind),
+            ("turbulence", self.turbulence.is_some(), is_wind),
+            ("shelter", self.shelter.is_some(), is_wind),
+            ("level", self.level.is_some(), is_water),
+            ("density", self.density.is_some(), is_water),
+            ("waves", !self.waves.is_empty(), is_water),
             ("strength", self.strength.is_some(), is_field),
             ("pressure", self.pressure.is_some(), is_field),
             ("weight", self.weight.is_some(), is_field),
@@ -262,19 +298,4 @@ impl RegionDescription {
             }
         }
     }
-}
-
-/// Refuses forces for later by their kind, before their own keys are met.
-pub(super) fn refuse_later_kinds(tree: &Value) -> Result<()> {
-    let forces = tree.get("force").and_then(Value::as_array);
-    for (index, force) in forces.into_iter().flatten().enumerate() {
-        let kind = force.get("kind").and_then(Value::as_str).unwrap_or_default();
-        if ForceKind::LATER.contains(&kind) {
-            let words: Vec<String> =
-                ForceKind::WORDS.iter().map(|(word, _)| format!("\"{word}\"")).collect();
-            let later = format!("is not supported yet; accepted: {}", words.join(", "));
-            return Err(Error::input(format!("force.{index}.kind = \"{kind}\" {later}")));
-        }
-    }
-    Ok(())
 }

@@ -10,6 +10,7 @@ mod collider;
 mod collision;
 mod fabric;
 mod field;
+mod flow;
 mod force;
 mod pins;
 mod shape;
@@ -25,6 +26,7 @@ pub use collider::{Capsule, ColliderDescription, Cuboid, HalfSpace, Sphere};
 pub use collision::{ClothCollision, CollisionDescription};
 pub use fabric::{FabricDescription, WarpDescription};
 pub use field::FalloffDescription;
+pub use flow::{ClothWater, GustsDescription, TurbulenceDescription, WaveDescription};
 pub use force::{FieldWord, Force, ForceKind, RegionDescription};
 pub use pins::{Keyframe, PinGroup, Pins};
 pub use shape::{PressureDescription, PressureKeyframe, SewingDescription, Shrink, ShrinkKeyframe};
@@ -79,8 +81,11 @@ pub fn fields_from_json(text: &str) -> Result<Vec<Field>> {
     let fields = force.iter().enumerate().map(|(index, force)| {
         let at = format!("force.{index}");
         force.check(&at, &[])?;
-        let steady = "is a steady wind, which a scene keeps; accepted: fields";
-        force.field(&at)?.ok_or_else(|| Error::input(format!("{at}.kind = \"wind\" {steady}")))
+        force.field(&at)?.ok_or_else(|| {
+            let kind = force.kind.word();
+            let kept = "is no field, and a scene keeps it; accepted: fields";
+            Error::input(format!("{at}.kind = \"{kind}\" {kept}"))
+        })
     });
     fields.collect()
 }
@@ -136,7 +141,6 @@ impl Scene {
     }
 
     fn from_tree(tree: &Value) -> Result<Self> {
-        force::refuse_later_kinds(tree)?;
         let table::Table(scene): table::Table<Self> = tree::typed(tree)?;
         scene.check()?;
         Ok(scene)
@@ -166,6 +170,11 @@ impl Scene {
         self.solver.check(self.scene.fps)?;
         for (index, force) in self.force.iter().enumerate() {
             force.check(&format!("force.{index}"), &cloths)?;
+        }
+        let mut waters = (0..).zip(&self.force).filter(|(_, force)| force.kind == ForceKind::Water);
+        if let (Some(_), Some((index, _))) = (waters.next(), waters.next()) {
+            let reason = "kind = \"water\" is the scene's second; accepted: one water";
+            return Err(Error::input(format!("force.{index}.{reason}")));
         }
         Ok(())
     }
@@ -247,5 +256,7 @@ fn tree_of_json(key: &str, json: &serde_json::Value) -> Result<Value> {
     })
 }
 
+#[cfg(test)]
+mod flow_tests;
 #[cfg(test)]
 mod tests;

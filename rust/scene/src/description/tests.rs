@@ -122,12 +122,6 @@ fn keys_of_later_versions_are_refused_by_name() {
         assert_eq!(refused(&format!("tear.{key}=1")), format!("tear.{key} is not supported yet"));
     }
     assert_eq!(refusal(&format!("[tear]\n{GOOD}")), "tear is not supported yet");
-    let error = refused("force.0.kind=water");
-    assert!(error.starts_with("force.0.kind = \"water\" is not supported yet"), "{error}");
-    let text = format!("{GOOD}\n[[force]]\nkind = \"water\"\nflow = 3\n");
-    assert!(
-        refusal(&text).starts_with("force.1.kind = \"water\" is not supported yet; accepted: ")
-    );
 }
 
 /// An override of the good scene, and how its refusal begins.
@@ -528,7 +522,9 @@ fn fields_are_read_with_their_values_and_defaults() {
     };
     let (axis, shape) = ([1.0, 0.0, 0.0].into(), boucle_solver::FieldShape::Plane);
     assert_eq!(field, Field { axis, shape, falloff, ..plain });
-    for (kind, _) in force::ForceKind::WORDS.iter().filter(|(word, _)| *word != "wind") {
+    for (kind, _) in
+        force::ForceKind::WORDS.iter().filter(|(word, _)| !["wind", "water"].contains(word))
+    {
         let scene = with_force(&format!("kind = \"{kind}\"\nstrength = 1")).expect(kind);
         assert!(scene.force[1].field("").expect(kind).is_some());
     }
@@ -582,7 +578,7 @@ fn fields_come_as_json_from_frame_to_frame() {
         (r#"[{"kind": "drag"}]"#, "force.0.strength is missing"),
         (
             r#"[{"kind": "wind", "velocity": [0, 0, 1], "coefficient": 1}]"#,
-            "force.0.kind = \"wind\" is a steady wind",
+            "force.0.kind = \"wind\" is no field",
         ),
     ] {
         let error = fields_from_json(text).expect_err(text).to_string();

@@ -40,7 +40,7 @@ impl Region {
 }
 
 /// 1 if the faces of a closed mesh are seen from outside, -1 if from inside, 0 if it is not closed.
-pub(super) fn facing(mesh: &Mesh, positions: &[Vector]) -> f64 {
+pub(crate) fn facing(mesh: &Mesh, positions: &[Vector]) -> f64 {
     let mut sides: Vec<([u32; 2], i32)> = mesh
         .faces()
         .flat_map(|corners| {

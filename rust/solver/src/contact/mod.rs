@@ -45,6 +45,7 @@ use bodies::Bodies;
 use candidate::Candidate;
 use contact::Contact;
 pub use detection::Detection;
+pub(crate) use enclosure::facing;
 use features::Trees;
 pub(crate) use half_space::Walls;
 pub(crate) use matrix::ContactMatrix;

@@ -1,99 +1,76 @@
-//! The air around all cloths: winds, force fields and pressure on every particle.
+//! Air and water around all cloths: winds, force fields, pressure and water on every particle.
 
 use boucle_geometry::Vector;
 use rayon::prelude::*;
 
+use super::faces::{FaceState, Faces};
 use super::field::Field;
 use super::fields::{Fields, Pushed};
-use super::wind::{Region, Wind, WindLaw, vertex_mask};
+use super::sea::{Sea, SeaScratch};
+use super::water::Water;
+use super::wind::Wind;
+use super::winds::{Streams, Winds};
 use super::{PressureScratch, Pressures};
 use crate::cloth::Cloth;
+use crate::collider::Collider;
 use crate::kernel::{CHUNK, ChunkVectors};
 use crate::state::State;
 
-/// A wind, and for regions of vertices whether it blows on each particle.
-type Blowing = (Wind, Option<Vec<bool>>);
-
-/// All winds and fields, and what they need to know of the meshes.
+/// All winds and fields and the water, and what they need to know of the meshes.
 #[derive(Debug)]
 pub(crate) struct Air {
     pub(crate) pressures: Pressures,
-    winds: Vec<Blowing>,
+    pub(crate) sea: Option<Box<Sea>>,
+    winds: Winds,
     fields: Fields,
-    /// Corners of all faces, in the simulation's numbering.
-    face_starts: Vec<u32>,
-    corners: Vec<u32>,
-    /// For each particle, where its faces begin in `faces_of`, and the end of the last.
-    particle_starts: Vec<u32>,
-    faces_of: Vec<u32>,
+    faces: Faces,
 }
 
-/// What the air does to each face in the present state, and fields to each particle.
+/// What air and water do in the present state.
 #[derive(Debug, Default)]
 pub(crate) struct AirScratch {
     pub(crate) pressure: PressureScratch,
-    faces: Vec<FaceAir>,
+    faces: Vec<FaceState>,
+    streams: Streams,
     /// Empty where there are no fields.
     pushed: Vec<Pushed>,
+    sea: SeaScratch,
 }
 
 impl AirScratch {
-    /// Stiffness (N/m) with which fields hold a particle, at most; as it was last observed.
+    /// Stiffness (N/m) with which fields and water hold a particle, at most; as it was last observed.
     pub(crate) fn stiffness_of(&self, particle: usize) -> f64 {
-        self.pushed.get(particle).map_or(0.0, |pushed| pushed.stiffness)
+        self.pushes(particle).map(|pushed| pushed.stiffness).sum()
+    }
+
+    fn pushes(&self, particle: usize) -> impl Iterator<Item = &Pushed> {
+        self.pushed.get(particle).into_iter().chain(self.sea.pushed.get(particle))
     }
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct FaceAir {
-    /// Unit normal, or zero for a face without area.
-    pub(super) normal: Vector,
-    pub(super) area: f64,
-    velocity: Vector,
-    pub(super) corner_share: f64,
-}
-
 impl Air {
-    pub(crate) fn new(winds: Vec<Wind>, cloths: &[Cloth]) -> Self {
-        let particle_count: usize = cloths.iter().map(|cloth| cloth.positions.len()).sum();
-        let (mut face_starts, mut corners, mut base) = (vec![0], Vec::new(), 0);
-        for cloth in cloths {
-            for face in cloth.mesh.faces() {
-                corners.extend(face.iter().map(|vertex| vertex + base));
-                face_starts.push(corners.len() as u32);
-            }
-            base += cloth.positions.len() as u32;
-        }
-        let mut of_particle = vec![Vec::new(); particle_count];
-        for face in 0..face_starts.len() - 1 {
-            for &corner in &corners[face_starts[face] as usize..face_starts[face + 1] as usize] {
-                of_particle[corner as usize].push(face as u32);
-            }
-        }
-        let mut particle_starts = vec![0];
-        particle_starts.extend(of_particle.iter().scan(0, |end, faces| {
-            *end += faces.len() as u32;
-            Some(*end)
-        }));
-        let faces_of = of_particle.concat();
-        let winds = winds.into_iter().map(|wind| {
-            let mask = vertex_mask(&wind.region, cloths);
-            (wind, mask)
-        });
+    pub(crate) fn new(
+        winds: Vec<Wind>,
+        water: Option<Water>,
+        cloths: &[Cloth],
+        gravity: &Vector,
+    ) -> Self {
         let masses = cloths.iter().flat_map(|cloth| cloth.masses.iter().copied());
         Self {
             pressures: Pressures::new(cloths),
-            winds: winds.collect(),
+            sea: water.map(|water| Box::new(Sea::new(water, cloths, gravity))),
+            winds: Winds::new(winds, cloths),
             fields: Fields::new(masses.collect()),
-            face_starts,
-            corners,
-            particle_starts,
-            faces_of,
+            faces: Faces::new(cloths),
         }
     }
 
     pub(crate) fn is_still(&self) -> bool {
-        self.winds.is_empty() && self.fields.is_empty() && self.pressures.is_empty()
+        self.has_no_flow() && self.pressures.is_empty()
+    }
+
+    fn has_no_flow(&self) -> bool {
+        self.winds.is_empty() && self.fields.is_empty() && self.sea.is_none()
     }
 
     /// Takes these fields in the place of those before.
@@ -103,26 +80,64 @@ impl Air {
 
     /// Lets a wind blow with this velocity (m/s) from now on.
     pub(crate) fn set_wind_velocity(&mut self, wind: usize, velocity: Vector) {
-        self.winds[wind].0.velocity = velocity;
+        self.winds.set_velocity(wind, velocity);
     }
 
-    /// The velocities (m/s) of the winds.
-    pub(crate) fn wind_velocities(&self) -> impl ExactSizeIterator<Item = Vector> {
-        self.winds.iter().map(|(wind, _)| wind.velocity)
+    /// Puts the calm surface of the water at a height (m), and lets its current flow so (m/s), from now on.
+    pub(crate) fn set_water(&mut self, level: f64, velocity: Vector) {
+        if let Some(sea) = &mut self.sea {
+            sea.set(level, velocity);
+        }
+    }
+
+    /// The water, if there is any.
+    pub(crate) fn water(&self) -> Option<&Water> {
+        self.sea.as_ref().map(|sea| sea.water())
+    }
+
+    /// Lets things weigh by this gravity (m/s²) in water from now on.
+    pub(crate) fn set_gravity(&mut self, gravity: &Vector) {
+        if let Some(sea) = &mut self.sea {
+            sea.set_gravity(gravity);
+        }
+    }
+
+    /// The velocities (m/s) of the winds, and how far (m) they have come.
+    pub(crate) fn wind_states(&self) -> impl ExactSizeIterator<Item = [Vector; 2]> {
+        self.winds.states()
+    }
+
+    /// Takes up such states.
+    pub(crate) fn restore_winds(&mut self, states: &[[Vector; 2]]) {
+        self.winds.restore(states);
     }
 
     /// How many winds blow.
     pub(crate) fn wind_count(&self) -> usize {
-        self.winds.len()
+        self.winds.count()
     }
 
     pub(crate) fn fields(&self) -> &[Field] {
         self.fields.each()
     }
 
-    /// Begins the frame after this one.
-    pub(crate) fn start_frame(&mut self, frame: i32) {
+    /// Whether colliders keep any wind off.
+    pub(crate) fn is_sheltered(&self) -> bool {
+        self.winds.are_sheltered()
+    }
+
+    /// Finds what feels winds in `state` among colliders whose points are there (m).
+    pub(crate) fn shelter(&mut self, colliders: &[Collider], points: &[Vector], state: &State) {
+        self.winds.shelter(colliders, points, &self.faces, state);
+    }
+
+    /// Begins the frame after this one, so many seconds after the first.
+    pub(crate) fn start_frame(&mut self, frame: i32, time: f64) {
         self.fields.start_frame(frame);
+        self.winds.start_frame(time);
+        if let Some(sea) = &mut self.sea {
+            sea.start_frame(time);
+        }
     }
 
     /// Begins the steps of a frame, of h seconds each.
@@ -130,53 +145,44 @@ impl Air {
         self.fields.start_steps(h, is_implicit);
     }
 
+    /// Begins a step that ends so many seconds into the frame.
+    pub(crate) fn start_step(&mut self, end: f64) {
+        self.winds.start_step(end);
+        if let Some(sea) = &mut self.sea {
+            sea.start_step(end);
+        }
+    }
+
+    /// Ends a frame of a duration (s) in `state`. Says whether any particle has become wetter or drier.
+    pub(crate) fn end_frame(&mut self, duration: f64, state: &State) -> bool {
+        self.winds.end_frame(duration);
+        self.sea.as_mut().is_some_and(|sea| sea.end_frame(duration, state))
+    }
+
     /// Largest damping (N·s/m) that the classic law puts on a particle.
     pub(crate) fn damping(&self) -> f64 {
-        let coefficients = |of: Option<u32>| {
-            let on_it = move |(wind, _): &&Blowing| match wind.region {
-                Region::Cloth(cloth, _) => of == Some(cloth),
-                _ => of.is_none(),
-            };
-            let each = self.winds.iter().filter(on_it).map(|(wind, _)| match wind.law {
-                WindLaw::Vertex { coefficient } => coefficient,
-                WindLaw::Face { .. } => 0.0,
-            });
-            each.sum::<f64>()
-        };
-        let own = self.winds.iter().filter_map(|(wind, _)| match wind.region {
-            Region::Cloth(cloth, _) => Some(coefficients(Some(cloth))),
-            _ => None,
-        });
-        coefficients(None) + own.fold(0.0, f64::max)
+        self.winds.damping()
     }
 
-    /// Damping (N·s/m) that winds and fields put on a particle, at most; as they were last observed.
+    /// Damping (N·s/m) that winds, fields and water put on a particle, at most; as they were last observed.
     pub(crate) fn damping_of(&self, particle: usize, scratch: &AirScratch) -> f64 {
-        let of_fields = scratch.pushed.get(particle).map_or(0.0, |pushed| pushed.damping);
-        let of_wind = |wind: &Wind| match wind.law {
-            WindLaw::Vertex { coefficient } => coefficient,
-            WindLaw::Face { air_density } => {
-                let of_face = |face: &FaceAir| {
-                    let speed = (wind.velocity - face.velocity).dot(&face.normal);
-                    face.corner_share * face.area * air_density * speed.abs()
-                };
-                self.faces_at(particle, scratch).map(of_face).sum()
-            }
-        };
-        let blowing = self.winds.iter().filter(|(_, mask)| reaches(mask.as_ref(), particle));
-        of_fields + blowing.map(|(wind, _)| of_wind(wind)).sum::<f64>()
+        let pushes: f64 = scratch.pushes(particle).map(|pushed| pushed.damping).sum();
+        let around = self.around(particle, scratch);
+        pushes + self.winds.damping_of(particle, &around, &scratch.streams)
     }
 
-    /// Largest damping (1/s) and square of a frequency (1/s²) that fields put on a particle within so many seconds, in which
-    /// other forces make it up to `gain` (m/s) faster than in `state`, and fields by what they push it with now.
-    pub(crate) fn field_rates(
+    /// Largest damping (1/s) and square of a frequency (1/s²) that fields and water put on a particle within so many seconds, in
+    /// which other forces make it up to `gain` (m/s) faster than in `state`, and fields by what they push it with now.
+    pub(crate) fn push_rates(
         &self,
         state: &State,
         inverse_masses: &[f64],
         [gain, seconds]: [f64; 2],
     ) -> [f64; 2] {
+        let [damping, stiffness] =
+            self.sea.as_ref().map_or([0.0; 2], |sea| sea.rates(state, inverse_masses, gain));
         if self.fields.is_empty() {
-            return [0.0; 2];
+            return [damping, stiffness];
         }
         let mut scratch = AirScratch::default();
         self.observe_flow(state, &mut scratch, gain);
@@ -185,42 +191,38 @@ impl Air {
         let gain = gain + seconds * pushes.fold(0.0, f64::max);
         self.observe_flow(state, &mut scratch, gain);
         let rates = scratch.pushed.iter().zip(inverse_masses);
-        rates.fold([0.0; 2], |[damping, stiffness], (pushed, w)| {
+        let of_fields = rates.fold([0.0; 2], |[damping, stiffness], (pushed, w)| {
             [f64::max(damping, pushed.damping * w), f64::max(stiffness, pushed.stiffness * w)]
-        })
+        });
+        [damping + of_fields[0], stiffness + of_fields[1]]
     }
 
-    /// Largest damping (1/s) that pressure puts on a particle, with faces up to `gain` (m/s) faster than in `state`.
+    /// Largest damping (1/s) that winds put on a particle by its faces, with these up to `gain` (m/s) faster than in `state`.
     ///
     /// The slope of `1/2 rho A s²` is `rho A s`. A step that is stable for it takes no more than the whole of s.
-    pub(crate) fn pressure_damping(&self, state: &State, inverse_masses: &[f64], gain: f64) -> f64 {
-        let pressing = self.winds.iter().filter_map(|(wind, mask)| match wind.law {
-            WindLaw::Face { air_density } => Some((air_density, wind.velocity, mask.as_ref())),
-            WindLaw::Vertex { .. } => None,
-        });
-        let pressing: Vec<_> = pressing.collect();
-        if pressing.is_empty() {
+    pub(crate) fn wind_damping(&self, state: &State, inverse_masses: &[f64], gain: f64) -> f64 {
+        let slopes = self.winds.slopes();
+        if slopes.is_empty() {
             return 0.0;
         }
         let mut scratch = AirScratch::default();
-        self.observe_flow(state, &mut scratch, 0.0);
-        let share_of = |particle: usize, face: &FaceAir| {
-            let blowing = pressing.iter().filter(|(.., mask)| reaches(*mask, particle));
-            let slopes = blowing.map(|&(air_density, velocity, _)| {
-                air_density * ((velocity - face.velocity).norm() + gain)
-            });
-            slopes.sum::<f64>() * face.area * face.corner_share
+        self.faces.observe(state, &mut scratch.faces);
+        let share_of = |particle: usize, face: &FaceState| {
+            let own = face.velocity.norm() + gain;
+            let blowing = slopes.iter().filter(|(_, reaches)| reaches(particle));
+            let slope: f64 = blowing.map(|(slope, _)| slope(own)).sum();
+            slope * face.area * face.corner_share
         };
         let damping_of = |particle: usize| {
-            let faces = self.faces_at(particle, &scratch);
-            faces.map(|face| share_of(particle, face)).sum::<f64>() * inverse_masses[particle]
+            let faces = self.around(particle, &scratch);
+            faces.map(|(_, face)| share_of(particle, face)).sum::<f64>() * inverse_masses[particle]
         };
         (0..state.len()).map(damping_of).fold(0.0, f64::max)
     }
 
-    /// Looks at every face in `state`, and where there are fields at every particle.
+    /// Looks at all that is in `state`.
     pub(crate) fn observe(&self, state: &State, scratch: &mut AirScratch) {
-        if self.winds.is_empty() && self.fields.is_empty() {
+        if self.has_no_flow() {
             scratch.pushed.clear();
         } else {
             self.observe_flow(state, scratch, 0.0);
@@ -232,53 +234,32 @@ impl Air {
 
     /// Looks at faces and particles that may become faster by `gain` (m/s).
     fn observe_flow(&self, state: &State, scratch: &mut AirScratch, gain: f64) {
-        scratch.faces.resize(self.face_starts.len() - 1, FaceAir::default());
-        scratch.faces.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(face, air)| {
-            *air = self.face_air(face, state);
-        });
+        self.faces.observe(state, &mut scratch.faces);
+        if let Some(sea) = &self.sea {
+            sea.observe(state, &self.faces, &mut scratch.faces, &mut scratch.sea);
+        }
+        self.winds.observe(&scratch.faces, &mut scratch.streams);
         let count = if self.fields.is_empty() { 0 } else { state.len() };
         let mut pushed = std::mem::take(&mut scratch.pushed);
         pushed.resize(count, Pushed::default());
         pushed.par_iter_mut().with_min_len(CHUNK / 8).enumerate().for_each(|(particle, pushed)| {
             let motion = [state.position.get(particle), state.velocity.get(particle)];
-            *pushed = self.fields.push(particle, motion, self.faces_at(particle, scratch), gain);
+            let faces = self.around(particle, scratch).map(|(_, face)| face);
+            *pushed = self.fields.push(particle, motion, faces, gain);
         });
         scratch.pushed = pushed;
     }
 
-    /// The faces around a particle, as they were last observed.
-    fn faces_at<'a>(
+    /// The faces around a particle by their numbers, as they were last observed.
+    fn around<'a>(
         &'a self,
         particle: usize,
         scratch: &'a AirScratch,
-    ) -> impl Iterator<Item = &'a FaceAir> + Clone {
-        let starts =
-            self.particle_starts[particle] as usize..self.particle_starts[particle + 1] as usize;
-        self.faces_of[starts].iter().map(|&face| &scratch.faces[face as usize])
+    ) -> impl Iterator<Item = (usize, &'a FaceState)> + Clone {
+        self.faces.around(particle).map(|face| (face, &scratch.faces[face]))
     }
 
-    fn face_air(&self, face: usize, state: &State) -> FaceAir {
-        let corners =
-            &self.corners[self.face_starts[face] as usize..self.face_starts[face + 1] as usize];
-        let origin = state.position.get(corners[0] as usize);
-        let spans = corners[1..].windows(2);
-        let vector_area = spans.fold(Vector::zeros(), |sum, pair| {
-            let a = state.position.get(pair[0] as usize) - origin;
-            let b = state.position.get(pair[1] as usize) - origin;
-            sum + 0.5 * a.cross(&b)
-        });
-        let area = vector_area.norm();
-        let corner_share = 1.0 / corners.len() as f64;
-        let velocity = corners.iter().map(|&corner| state.velocity.get(corner as usize));
-        FaceAir {
-            normal: if area > 0.0 { vector_area / area } else { Vector::zeros() },
-            area,
-            velocity: velocity.sum::<Vector>() * corner_share,
-            corner_share,
-        }
-    }
-
-    /// Adds the forces (N) of winds, fields and pressure on the particles of a chunk.
+    /// Adds the forces (N) of winds, fields, pressure and water on the particles of a chunk.
     pub(crate) fn add_forces(
         &self,
         chunk: usize,
@@ -288,7 +269,12 @@ impl Air {
     ) {
         let first = chunk * CHUNK;
         for particle in first..(first + CHUNK).min(state.len()) {
-            let mut push = self.force_on(particle, state, scratch);
+            let mut push: Vector = scratch.pushes(particle).map(|pushed| pushed.force).sum();
+            if !self.winds.is_empty() {
+                let motion = [state.position.get(particle), state.velocity.get(particle)];
+                let around = self.around(particle, scratch);
+                self.winds.add_force(particle, motion, &around, &scratch.streams, &mut push);
+            }
             if let Some(pressure) = scratch.pressure.force(particle) {
                 push += pressure;
             }
@@ -297,40 +283,4 @@ impl Air {
             }
         }
     }
-
-    fn force_on(&self, particle: usize, state: &State, scratch: &AirScratch) -> Vector {
-        let faces = self.faces_at(particle, scratch);
-        let position = state.position.get(particle);
-        let velocity = state.velocity.get(particle);
-        let mut force = scratch.pushed.get(particle).map_or(Vector::zeros(), |pushed| pushed.force);
-        for (wind, mask) in &self.winds {
-            let blows = match &wind.region {
-                Region::Box(region) => region.contains(&position),
-                _ => reaches(mask.as_ref(), particle),
-            };
-            if !blows {
-                continue;
-            }
-            match wind.law {
-                WindLaw::Vertex { coefficient } => {
-                    let sum: Vector = faces.clone().map(|face| face.normal).sum();
-                    let normal = sum.try_normalize(1e-12).unwrap_or_else(Vector::zeros);
-                    force += coefficient * (wind.velocity - velocity).dot(&normal) * normal;
-                }
-                WindLaw::Face { air_density } => {
-                    for face in faces.clone() {
-                        let speed = (wind.velocity - face.velocity).dot(&face.normal);
-                        let pressure = 0.5 * air_density * speed.abs() * speed;
-                        force += face.corner_share * face.area * pressure * face.normal;
-                    }
-                }
-            }
-        }
-        force
-    }
-}
-
-/// Whether a wind with a mask blows on a particle; without one it may, wherever it is.
-fn reaches(mask: Option<&Vec<bool>>, particle: usize) -> bool {
-    mask.is_none_or(|mask| mask[particle])
 }

@@ -8,7 +8,7 @@
 
 use boucle_geometry::Vector;
 
-use super::air::FaceAir;
+use super::faces::FaceState;
 use super::field::{Field, Push, draw};
 
 /// Largest turn by magnetic fields in a step.
@@ -68,7 +68,7 @@ impl Fields {
         &self,
         particle: usize,
         [x, v]: [Vector; 2],
-        faces: impl Iterator<Item = &'a FaceAir> + Clone,
+        faces: impl Iterator<Item = &'a FaceState> + Clone,
         gain: f64,
     ) -> Pushed {
         let mut push = Push::default();

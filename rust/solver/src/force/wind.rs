@@ -4,16 +4,21 @@
 //!
 //! ```text
 //! F = kw ((u - v)·n) n                            (N)  on each particle: the classic law
-//! F = 1/2 rho A |(u - v)·n| ((u - v)·n) n         (N)  on each face of area A, drag coefficient 1
+//! F = 1/2 rho A Cd |(u - v)·n| ((u - v)·n) n      (N)  on each face of area A: see [`super::flow`]
 //! ```
 //!
 //! The force of a face is shared equally by its corners. A region limits the wind to a box in space, where a
-//! particle feels it while it is inside, or to some vertices, of every cloth or of one.
+//! particle feels it while it is inside, or to some vertices, of every cloth or of one. What is under water feels none.
+//!
+//! The velocity u changes with gusts and turbulence ([`super::weather`]), and may be none behind colliders
+//! ([`super::shelter`]).
 //!
 //! Source: Provot 1995 for the first law; the second is the pressure of a flow on a plate.
 
 use boucle_geometry::{Aabb, Vector};
 
+use super::flow::Flow;
+use super::weather::{Gusts, Turbulence};
 use crate::cloth::Cloth;
 use crate::error::{Error, Result};
 use crate::material::at_least_zero;
@@ -26,11 +31,8 @@ pub enum WindLaw {
         /// Force of a particle for each unit of wind speed (N·s/m).
         coefficient: f64,
     },
-    /// By face: pressure of the flow.
-    Face {
-        /// Density of the air (kg/m³).
-        air_density: f64,
-    },
+    /// By face: what the flow does to it.
+    Face(Flow),
 }
 
 /// Where wind blows.
@@ -46,18 +48,57 @@ pub enum Region {
     Cloth(u32, Option<Vec<u32>>),
 }
 
-/// A steady wind.
+/// A wind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wind {
-    /// Velocity of the air (m/s).
+    /// Mean velocity of the air (m/s).
     pub velocity: Vector,
     /// How it becomes force.
     pub law: WindLaw,
     /// Where it blows.
     pub region: Region,
+    /// Adds gusts.
+    pub gusts: Option<Gusts>,
+    /// Adds turbulence.
+    pub turbulence: Option<Turbulence>,
+    /// Whether the air is still behind colliders.
+    pub is_sheltered: bool,
+}
+
+impl Default for Wind {
+    /// Still air of 1.2 kg/m³ that presses on faces.
+    fn default() -> Self {
+        Self {
+            velocity: Vector::zeros(),
+            law: WindLaw::Face(Flow::new(1.2)),
+            region: Region::Everywhere,
+            gusts: None,
+            turbulence: None,
+            is_sheltered: false,
+        }
+    }
 }
 
 impl Wind {
+    /// No gust and no eddy is faster (m/s).
+    pub(super) fn most_speed(&self) -> f64 {
+        let gust = 1.0 + self.gusts.map_or(0.0, |gusts| gusts.strength);
+        let eddy = self.turbulence.map_or(0.0, |turbulence| 3.0_f64.sqrt() * turbulence.most());
+        self.velocity.norm() * (gust + eddy)
+    }
+
+    /// Refuses coefficients, gusts and turbulence outside their domains.
+    ///
+    /// # Errors
+    /// [`Error::OutOfDomain`] for the first value that is not accepted.
+    pub fn check_weather(&self) -> Result<()> {
+        if let WindLaw::Face(flow) = self.law {
+            flow.check("air")?;
+        }
+        self.gusts.as_ref().map_or(Ok(()), Gusts::check)?;
+        self.turbulence.as_ref().map_or(Ok(()), Turbulence::check)
+    }
+
     /// Refuses values outside their domains.
     ///
     /// # Errors
@@ -67,9 +108,10 @@ impl Wind {
             WindLaw::Vertex { coefficient } => {
                 at_least_zero("wind coefficient (N·s/m)", coefficient)?;
             }
-            WindLaw::Face { air_density } => at_least_zero("air_density (kg/m³)", air_density)?,
+            WindLaw::Face(_) => {}
         }
         check_velocity(&self.velocity)?;
+        self.check_weather()?;
         let (cloths, vertices) = match &self.region {
             Region::Everywhere | Region::Box(_) => return Ok(()),
             Region::Vertices(vertices) => (cloths, vertices.as_slice()),

@@ -41,7 +41,6 @@ mod tests;
 
 use crate::cloth::{Cloth, placed};
 use crate::contact::Contacts;
-use crate::fabric::Fabrics;
 use crate::interrupter::Interrupter;
 use crate::linear::{BlockJacobi, ConjugateGradient};
 use crate::settings::LinearSolver;
@@ -123,7 +122,7 @@ impl Implicit {
         let springs = placed(cloths)
             .flat_map(|(cloth, base)| cloth.springs.iter().map(move |spring| (spring, base)));
         let taut = Taut::new(cloths, &system.layout);
-        let solving = Solving::of(cloths, linear_solver);
+        let solving = Solving::of(cloths, linear_solver).within(system);
         let preconditioner = Preconditioner::new(cloths, &system.fabrics, linear_solver);
         let factored = solving.is_factored.then(|| Factored::new(&preconditioner, system));
         Self {
@@ -163,15 +162,20 @@ impl Implicit {
         self.pieces.follow_pins(|particle| system.is_held(particle));
     }
 
+    /// Forgets what depends on the masses of particles.
+    pub(crate) fn follow_masses(&mut self) {
+        self.preconditioner.forget();
+    }
+
     /// Takes the present rest lengths of a cloth's springs; `base` is the number of its first particle.
     pub(crate) fn follow_rest_lengths(&mut self, cloth: &Cloth, base: u32) {
         self.taut.follow_rest_lengths(cloth, base);
     }
 
     /// Takes the present stiffness of the cloths' springs.
-    pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth], fabrics: &Fabrics) {
-        self.preconditioner.follow_stiffness(cloths, fabrics);
-        self.solving = Solving::of(cloths, self.linear_solver);
+    pub(crate) fn follow_stiffness(&mut self, cloths: &[Cloth], system: &System) {
+        self.preconditioner.follow_stiffness(cloths, &system.fabrics);
+        self.solving = Solving::of(cloths, self.linear_solver).within(system);
     }
 
     /// Moves `state` by one step of h seconds, among contacts that were told of the step.

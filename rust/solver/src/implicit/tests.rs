@@ -91,7 +91,7 @@ impl Making {
 
     /// The same of several cloths.
     fn of(cloths: Vec<Cloth>, positions: &[Vector], velocities: &[Vector]) -> Self {
-        let mut system = System::new(&cloths, Vec::new(), Vector::new(0.0, 0.0, -9.81));
+        let mut system = System::new(&cloths, Vec::new(), None, Vector::new(0.0, 0.0, -9.81));
         for pin in pins(&cloths) {
             system.set_pinned(pin, true);
         }

@@ -20,11 +20,18 @@ impl Simulation {
         let of_goals: f64 =
             cloths.clone().map(|cloth| goals.energy(self.particles(cloth), &self.state)).sum();
         let of_fabrics = self.system.fabrics.energy(cloths.clone(), &self.state);
+        let of_water = self.system.air.sea.as_ref().map_or(0.0, |sea| {
+            cloths.clone().map(|cloth| sea.energy(self.particles(cloth), &self.state)).sum()
+        });
         let cloths = self.cloths[cloths.clone()].iter().zip(self.bases[cloths].iter().copied());
         let certificate =
-            certify(cloths, &self.state, &self.settings.gravity, self.frame, self.substeps_taken);
+            certify(cloths, &self.state, &self.system, self.frame, self.substeps_taken);
         Certificate {
-            potential_energy: certificate.potential_energy + of_pressure + of_goals + of_fabrics,
+            potential_energy: certificate.potential_energy
+                + of_pressure
+                + of_goals
+                + of_fabrics
+                + of_water,
             iterations: self.iterations_taken,
             intersections: self.intersections,
             clipped: self.clipped,

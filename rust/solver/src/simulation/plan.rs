@@ -34,9 +34,9 @@ impl Simulation {
         let factor = stiffening(&self.cloths, |cloth| self.longest_ratio(cloth));
         let System { air, inverse_masses, .. } = &self.system;
         let fall = self.settings.gravity.norm() * self.frame_duration();
-        let pressure = air.pressure_damping(&self.state, inverse_masses, fall);
+        let pressure = air.wind_damping(&self.state, inverse_masses, fall);
         let [damping, w_squared] =
-            air.field_rates(&self.state, inverse_masses, [fall, self.frame_duration()]);
+            air.push_rates(&self.state, inverse_masses, [fall, self.frame_duration()]);
         let inflation = air.pressures.stiffness(&self.state, inverse_masses);
         let goals = self.system.goals.largest_rates(inverse_masses);
         let spectrum = self.spectrum.stiffened(factor).with_goals(goals);

@@ -17,8 +17,9 @@ impl Simulation {
             state: self.state.clone(),
             memory: self.method.memory().cloned(),
             gravity: self.settings.gravity,
-            winds: self.system.air.wind_velocities().collect(),
+            winds: self.system.air.wind_states().collect(),
             fields: self.system.air.fields().to_vec(),
+            water: self.system.air.sea.as_ref().map_or_else(Vec::new, |sea| sea.to_numbers()),
             colliders: self.contacts.collider_positions().clone(),
             shape: self.shape_numbers(),
             pins,
@@ -56,10 +57,13 @@ impl Simulation {
         self.clipped = 0;
         self.grab = checkpoint.grab;
         self.settings.gravity = checkpoint.gravity;
-        self.system.gravity = checkpoint.gravity;
-        for (wind, velocity) in checkpoint.winds.into_iter().enumerate() {
-            self.system.air.set_wind_velocity(wind, velocity);
+        self.system.set_gravity(checkpoint.gravity);
+        self.system.air.restore_winds(&checkpoint.winds);
+        if let Some(sea) = &mut self.system.air.sea {
+            sea.restore(&checkpoint.water);
         }
+        self.start_flows();
+        self.weigh();
         self.system.air.set_fields(checkpoint.fields);
         self.follow_holds();
         self.take_shape(shape);
@@ -76,7 +80,9 @@ impl Simulation {
             (own, restored) => own.is_none() && restored.is_none(),
         };
         let own = &self.contacts.collider_positions()[0];
+        let sea = self.system.air.sea.as_ref();
         checkpoint.state.len() == self.state.len()
+            && sea.map_or(checkpoint.water.is_empty(), |sea| sea.fits(&checkpoint.water))
             && checkpoint.winds.len() == self.system.air.wind_count()
             && checkpoint.colliders.iter().all(|points| points.len() == own.len())
             && checkpoint.grab.goals.iter().all(is_grabbable)

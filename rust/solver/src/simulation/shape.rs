@@ -129,7 +129,7 @@ impl Simulation {
     }
 
     pub(super) fn follow_welds(&mut self) {
-        self.method.follow_stiffness(&self.cloths, &self.system.fabrics);
+        self.method.follow_stiffness(&self.cloths, &self.system);
         self.follow_pins();
     }
 

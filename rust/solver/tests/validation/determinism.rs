@@ -2,7 +2,7 @@
 
 use boucle_geometry::{Mesh, Vector};
 use boucle_solver::{
-    Cloth, DampingLaw, Error, IntegratorKind, Limiter, Mass, Region, Settings, Simulation,
+    Cloth, DampingLaw, Error, Flow, IntegratorKind, Limiter, Mass, Region, Settings, Simulation,
     SpringMaterial, StepSize, Wind, WindLaw,
 };
 
@@ -52,10 +52,10 @@ fn scrambled(material: SpringMaterial) -> Cloth {
 fn winds() -> Vec<Wind> {
     let velocity = Vector::new(1.0, 0.5, 2.0);
     let classic = WindLaw::Vertex { coefficient: 1e-4 };
-    let pressure = WindLaw::Face { air_density: 1.2 };
+    let pressure = WindLaw::Face(Flow::new(1.2));
     let corner = Region::Vertices((0..300).collect());
     [(classic, corner), (pressure, Region::Everywhere)]
-        .map(|(law, region)| Wind { velocity, law, region })
+        .map(|(law, region)| Wind { velocity, law, region, ..Wind::default() })
         .to_vec()
 }
 
@@ -113,7 +113,7 @@ fn curtain(material: &SpringMaterial, settings: &Settings) -> Simulation {
     let cloth = sheet([9, 9], 0.1, &Mass::Density(0.2), material.clone(), &[0, 4, 8]);
     let classic = WindLaw::Vertex { coefficient: 1e-3 };
     let velocity = Vector::new(1.0, 0.5, 2.0);
-    let wind = Wind { velocity, law: classic, region: Region::Everywhere };
+    let wind = Wind { velocity, law: classic, region: Region::Everywhere, ..Wind::default() };
     Simulation::new(vec![cloth], vec![wind], settings.clone()).expect("a simulation")
 }
 

@@ -2,7 +2,7 @@
 
 use boucle_geometry::Vector;
 use boucle_solver::{
-    IntegratorKind, Mass, Region, Settings, Simulation, SpringMaterial, Wind, WindLaw,
+    Flow, IntegratorKind, Mass, Settings, Simulation, SpringMaterial, Wind, WindLaw,
 };
 
 use crate::sheets::{G, assert_close, classic, in_wind, launched, material, run, sheet, steps_of};
@@ -21,8 +21,8 @@ fn falling_speed(simulation: &Simulation) -> f64 {
 fn still_air(air_density: f64) -> Wind {
     Wind {
         velocity: Vector::zeros(),
-        law: WindLaw::Face { air_density },
-        region: Region::Everywhere,
+        law: WindLaw::Face(Flow::new(air_density)),
+        ..Wind::default()
     }
 }
 
@@ -70,8 +70,8 @@ fn auto_steps_bear_a_gale_and_a_dense_flow() {
     for (speed, air_density) in [(50.0, 1.2), (2.0, 1000.0)] {
         let wind = Wind {
             velocity: Vector::new(0.3, 0.2, 1.0) * speed,
-            law: WindLaw::Face { air_density },
-            region: Region::Everywhere,
+            law: WindLaw::Face(Flow::new(air_density)),
+            ..Wind::default()
         };
         let cloth = sheet([8, 8], 0.1, &Mass::Density(0.1), material([1.0, 0.5, 0.1]), &[]);
         let settings = Settings { gravity: Vector::zeros(), threads: 1, ..classic() };

@@ -2,7 +2,7 @@
 
 use boucle_geometry::{Mesh, Vector};
 use boucle_solver::{
-    Cloth, DampingLaw, IntegratorKind, Limiter, Mass, Region, Settings, SpringMaterial, Wind,
+    Cloth, DampingLaw, Flow, IntegratorKind, Limiter, Mass, Region, Settings, SpringMaterial, Wind,
     WindLaw,
 };
 use nalgebra::{Matrix3, Rotation3};
@@ -64,7 +64,7 @@ struct Scene {
 
 fn scenes() -> Vec<Scene> {
     let (classic, pressure) =
-        (WindLaw::Vertex { coefficient: 0.002 }, WindLaw::Face { air_density: 1.2 });
+        (WindLaw::Vertex { coefficient: 0.002 }, WindLaw::Face(Flow::new(1.2)));
     let springs = SpringMaterial { damping: [0.02, 0.01, 0.005], ..material([200.0, 50.0, 5.0]) };
     let axial = SpringMaterial { damping_law: DampingLaw::Axial, ..springs.clone() };
     let with = |limiter| SpringMaterial { limiter, deformation_rate: 0.02, ..springs.clone() };
@@ -96,7 +96,7 @@ fn final_positions_of(
     change: &Change,
 ) -> Vec<Vector> {
     let velocity = change.turn * Vector::new(0.5, 1.0, 2.0);
-    let wind = Wind { velocity, law: scene.wind, region: Region::Everywhere };
+    let wind = Wind { velocity, law: scene.wind, region: Region::Everywhere, ..Wind::default() };
     let settings = Settings {
         gravity: change.turn * Vector::new(0.0, -9.81, 0.0),
         integrator: scene.integrator,

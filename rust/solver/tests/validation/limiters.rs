@@ -2,7 +2,7 @@
 
 use boucle_geometry::Vector;
 use boucle_solver::{
-    Cloth, Limiter, Mass, Region, Settings, Simulation, SpringMaterial, StepSize, Wind, WindLaw,
+    Cloth, Limiter, Mass, Settings, Simulation, SpringMaterial, StepSize, Wind, WindLaw,
 };
 
 use crate::sheets::{G, classic, grid_mesh, grid_positions, in_wind, network, simulation, spring};
@@ -106,7 +106,7 @@ fn project_holds_the_rate_with_moving_pins_and_wind() {
     let wind = Wind {
         velocity: Vector::new(1.0, 5.0, 0.0),
         law: WindLaw::Vertex { coefficient: 1e-3 },
-        region: Region::Everywhere,
+        ..Wind::default()
     };
     let settings = Settings { perturbation: 1e-6, ..classic() };
     let mut sheet = in_wind(hung_cloth(32, material(Limiter::Project)), vec![wind], settings);

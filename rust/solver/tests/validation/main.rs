@@ -42,4 +42,7 @@ mod stability;
 mod statics;
 mod swing;
 mod told;
+mod water;
+mod weather;
+mod wet;
 mod wind;

@@ -2,8 +2,8 @@
 
 use boucle_geometry::Vector;
 use boucle_solver::{
-    Certificate, Cloth, DampingLaw, IntegratorKind, Region, Settings, Simulation, SpringMaterial,
-    Wind, WindLaw,
+    Certificate, Cloth, DampingLaw, Flow, IntegratorKind, Region, Settings, Simulation,
+    SpringMaterial, Wind, WindLaw,
 };
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -66,11 +66,11 @@ impl Dice {
 
     fn wind(&mut self) -> Wind {
         let law = if self.happens(0.5) {
-            WindLaw::Face { air_density: 1.2 }
+            WindLaw::Face(Flow::new(1.2))
         } else {
             WindLaw::Vertex { coefficient: self.of_any_size(1e-5, 1e-2) }
         };
-        Wind { velocity: self.vector(15.0), law, region: Region::Everywhere }
+        Wind { velocity: self.vector(15.0), law, region: Region::Everywhere, ..Wind::default() }
     }
 }
 
@@ -216,8 +216,8 @@ fn torn_about_by_its_pins_and_the_wind_a_sheet_is_never_lost() {
         let mut targets = cloth.positions.clone();
         let gale = Wind {
             velocity: Vector::new(5.0, -12.0, 3.0),
-            law: WindLaw::Face { air_density: 1.2 },
-            region: boucle_solver::Region::Everywhere,
+            law: WindLaw::Face(Flow::new(1.2)),
+            ..Wind::default()
         };
         let mut sheet = in_wind(cloth, vec![gale], settings(IntegratorKind::Bdf2));
         for frame in 0..120 {

@@ -35,6 +35,7 @@ fn demonstration_in_the_solver(plain: &Plain) -> Simulation {
         velocity: plain.wind_velocity,
         law: WindLaw::Vertex { coefficient: plain.wind_coefficient },
         region: Region::Vertices(blown.collect()),
+        ..Wind::default()
     };
     let settings = Settings {
         gravity: plain.gravity,

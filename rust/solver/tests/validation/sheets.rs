@@ -2,8 +2,8 @@
 
 use boucle_geometry::{Mesh, Vector};
 use boucle_solver::{
-    Cloth, IntegratorKind, Limiter, Mass, PinMaterial, Settings, Simulation, Spring, SpringKind,
-    SpringMaterial, StepSize, Tailoring, Wind,
+    Bulk, Cloth, IntegratorKind, Limiter, Mass, PinMaterial, Settings, Simulation, Spring,
+    SpringKind, SpringMaterial, StepSize, Tailoring, Wind,
 };
 
 /// Standard gravity of the tests (m/s²).
@@ -81,6 +81,7 @@ pub(crate) fn network(
         collision: None,
         tailoring: Tailoring::default(),
         pressure: None,
+        bulk: Bulk::default(),
     }
 }
 

@@ -2,8 +2,8 @@
 
 use boucle_geometry::Vector;
 use boucle_solver::{
-    Certificate, Cloth, Field, FieldKind, IntegratorKind, Pressure, Region, Settings, Simulation,
-    SpringMaterial, Wind, WindLaw,
+    Certificate, Cloth, Field, FieldKind, Flow, IntegratorKind, Pressure, Region, Settings,
+    Simulation, SpringMaterial, Wind, WindLaw,
 };
 
 use crate::contact_things::{ball, colliding, patch, placed};
@@ -21,8 +21,8 @@ fn scene(integrator: IntegratorKind, threads: usize) -> Simulation {
     let cloth = Cloth { pins: vec![0, 1, 2, SIDE - 1], pressure, ..sheet };
     let settings = Settings { integrator, threads, perturbation: 1e-6, ..Settings::default() };
     let velocity = Vector::new(0.0, 0.5, 0.0);
-    let law = WindLaw::Face { air_density: 1.2 };
-    let breeze = Wind { velocity, law, region: Region::Everywhere };
+    let law = WindLaw::Face(Flow::new(1.2));
+    let breeze = Wind { velocity, law, region: Region::Everywhere, ..Wind::default() };
     let ball = ball(Vector::zeros(), 0.18, 0.3);
     Simulation::with_colliders(vec![cloth], vec![ball], vec![breeze], settings)
         .expect("a simulation")

@@ -2,7 +2,7 @@
 
 use boucle_geometry::{Aabb, Mesh, Vector};
 use boucle_solver::{
-    Cloth, IntegratorKind, Mass, Region, Settings, Simulation, StepSize, Wind, WindLaw,
+    Cloth, Flow, IntegratorKind, Mass, Region, Settings, Simulation, StepSize, Wind, WindLaw,
 };
 
 use crate::sheets::{cloth, forces_at, grid_mesh, launched, material, run, steps_of};
@@ -28,7 +28,7 @@ fn still(mesh: Mesh, positions: &[[f64; 3]]) -> Cloth {
 }
 
 fn wind(velocity: [f64; 3], law: WindLaw, region: Region) -> Wind {
-    Wind { velocity: velocity.into(), law, region }
+    Wind { velocity: velocity.into(), law, region, ..Wind::default() }
 }
 
 /// The forces (N) of some winds on a cloth at rest; 1e-12 is rounding.
@@ -42,7 +42,7 @@ fn assert_forces(cloth: &Cloth, winds: &[Wind], expected: &[[f64; 3]]) {
 }
 
 const CLASSIC: WindLaw = WindLaw::Vertex { coefficient: 0.02 };
-const PRESSURE: WindLaw = WindLaw::Face { air_density: 1.2 };
+const PRESSURE: WindLaw = WindLaw::Face(Flow::new(1.2));
 
 /// u = (1, 2, 3): along z it is 3, along -x it is -1, along the mean normal (-1, 0, 1)/√2 of the fold 2/√2, so that
 /// the force there is 0.02 · 2/√2 · (-1, 0, 1)/√2.
@@ -170,7 +170,7 @@ fn wind_acts_by_its_velocity_relative_to_the_cloth() {
                 grid_mesh(2, 2),
                 &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]],
             );
-            let blow = Wind { velocity: u, law, region: Region::Everywhere };
+            let blow = Wind { velocity: u, law, region: Region::Everywhere, ..Wind::default() };
             let settings = steps_of(h, IntegratorKind::ForwardEuler);
             let velocities = [Vector::new(0.0, 0.0, own); 4];
             let mut simulation = launched(flat, vec![blow], settings, &velocities);

@@ -19,7 +19,7 @@ mod numbers;
 
 pub use falloff::{Falloff, FalloffShape, Range, Side};
 pub(super) use kinds::Push;
-pub(super) use noise::draw;
+pub(super) use noise::{draw, turbulence};
 pub(crate) use numbers::COUNT as NUMBERS;
 
 use boucle_geometry::Vector;

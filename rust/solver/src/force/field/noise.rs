@@ -24,7 +24,7 @@ pub(in crate::force) fn draw(seed: u32, frame: i32, particle: usize) -> f64 {
 }
 
 /// Turbulence at a place (m): three components within -1 to 1.
-pub(super) fn turbulence(place: &Vector, size: f64) -> Vector {
+pub(in crate::force) fn turbulence(place: &Vector, size: f64) -> Vector {
     let place = if size > 0.0 { place / size } else { *place };
     let mut sum = Vector::zeros();
     for octave in 0..OCTAVES {

@@ -71,7 +71,8 @@ class WaterProperties:
     wave_angle: FloatProperty(
         name="Wave Direction",
         description="Where the waves run, from the world's X axis towards its Y axis (degrees)",
-        default=0.0, subtype="ANGLE", override=OVERRIDABLE, update=changed,
+        default=0.0, min=-1e3, max=1e3, soft_min=-3.14159265, soft_max=3.14159265, subtype="ANGLE",
+        override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     bulk_density: FloatProperty(
         name="Bulk Density",

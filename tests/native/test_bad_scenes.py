@@ -174,11 +174,12 @@ SCENES = [
     ("fabric warp", "[solver]", "[cloth.fabric]\nwarp = [0, 0, 0]\n[solver]", "cloth.flag.fabric.warp = [0, 0, 0]"),
     # for later versions
     ("later tear", "[solver]", "[tear]\nenabled = false\n[solver]", "tear.enabled is not supported yet"),
-    *(
-        (f"later {kind}", "[solver]", f'[[force]]\nkind = "{kind}"\nstrength = 1\n[solver]',
-         f'force.0.kind = "{kind}" is not supported yet')
-        for kind in ("water",)
-    ),
+    # water
+    ("strength of water", "[solver]", '[[force]]\nkind = "water"\nstrength = 1\n[solver]',
+     'force.0.strength is no key of "water"'),
+    ("bulk density", "[solver]", "[cloth.water]\nbulk_density = 0\n[solver]",
+     'cloth "flag": bulk_density (kg/m³) in water is 0; accepted: 1 to 1e5'),
+    ("hull with a border", "[solver]", "[cloth.water]\nhull = true\n[solver]", "hull is true, but its mesh has a border"),
 ]
 
 # What is wrong with the mesh file, its content (None: there is none), and what the complaint must hold.

@@ -2,7 +2,8 @@
 
 use boucle_geometry::{Mesh, Vector};
 use boucle_solver::{
-    Bulk, Cloth, Flow, IntegratorKind, Mass, Settings, Shape, Simulation, StepSize, Water, Wave,
+    Bulk, Cloth, Flow, IntegratorKind, Mass, Settings, Shape, Simulation, Spring, StepSize, Water,
+    Wave,
 };
 
 use crate::sheets::{
@@ -158,10 +159,14 @@ fn a_closed_body_floats_as_deep_as_the_water_that_it_displaces_weighs() {
         }
         let (_, speed) = height_and_speed(&simulation);
         assert_close(&format!("draft of {mass} kg"), draft, mass / 1000.0, 0.02);
-        assert!(speed < 0.03, "{speed}");
+        assert!(speed < 0.1, "{speed}");
     }
-    let mut sinking = in_wind(raft(500.0), Vec::new(), settings(still(0.2)));
-    run(&mut sinking, 240);
+    // Stiffer: 1e6 N/m let the pressure of ten metres take a tenth of its volume.
+    let heavy = raft(500.0);
+    let stiffer = |spring: &Spring| Spring { stiffness: 1e8, ..*spring };
+    let heavy = Cloth { springs: heavy.springs.iter().map(stiffer).collect(), ..heavy };
+    let mut sinking = in_wind(heavy, Vec::new(), settings(still(0.2)));
+    run(&mut sinking, 120);
     let (height, speed) = height_and_speed(&sinking);
     assert!(height < -3.0);
     // The weight in water on the face that goes ahead and the one behind, each with half of the drag of a sheet.

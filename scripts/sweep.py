@@ -51,6 +51,21 @@ def worker_count(text: str) -> int:
     return int(text)
 
 
+def seconds(text: str) -> float:
+    """The duration that was written."""
+    if not re.fullmatch(r"\d{1,6}(\.\d{1,6})?", text):
+        raise argparse.ArgumentTypeError(f"{text!r}; accepted: seconds")
+    return float(text)
+
+
+def scheduler_address(text: str) -> str:
+    """The address that was written."""
+    match = re.fullmatch(r"(tcp|tls)://[^\s/:]+(:[^\s/:]+)*:(\d{1,5})", text)
+    if match is None or not 1 <= int(match[3]) <= 65535:
+        raise argparse.ArgumentTypeError(f"{text!r}; accepted: tcp://HOST:PORT or tls://HOST:PORT")
+    return text
+
+
 def parser() -> Parser:
     """The command line of this script."""
     lines = Parser(prog="sweep.py", description=__doc__, allow_abbrev=False)
@@ -60,7 +75,19 @@ def parser() -> Parser:
     where.add_argument(
         "--workers", metavar="N", type=worker_count, help="processes here; one a core by default"
     )
-    where.add_argument("--scheduler", metavar="tcp://HOST:PORT", help="a Dask cluster's scheduler")
+    where.add_argument(
+        "--scheduler",
+        metavar="tcp://HOST:PORT",
+        type=scheduler_address,
+        help="a Dask cluster's scheduler",
+    )
+    lines.add_argument(
+        "--patience",
+        metavar="SECONDS",
+        type=seconds,
+        default=60.0,
+        help="how long to look for a scheduler that was lost; 60 by default",
+    )
     lines.add_argument("--resume", action="store_true", help="bake only what is not there whole")
     lines.add_argument(
         "--table", choices=table.KINDS, help="kind of the table; Parquet if pyarrow is there"
@@ -130,7 +157,7 @@ def results(
 ) -> Iterator[dict[str, Any]]:
     """Bake jobs where the command line says, and yield what becomes of each."""
     if jobs and options.scheduler:
-        yield from cluster.outcomes(jobs, options.scheduler, progress.warn)
+        yield from cluster.outcomes(jobs, options.scheduler, options.patience, progress.warn)
     elif jobs:
         yield from local.outcomes(jobs, options.workers or core_count())
 

@@ -20,7 +20,6 @@ from .run import Job, record_failure
 
 SCRIPTS = Path(__file__).resolve().parent.parent
 CONNECT_SECONDS = 10.0
-RECONNECT_SECONDS = 60.0
 SECONDS_BETWEEN_LOOKS = 2.0
 MOST_HANDED_OVER = 256
 """Runs that the scheduler has at a time; more would only make it and us slower."""
@@ -38,15 +37,25 @@ class _Disconnected(Exception):
     """The connection broke."""
 
 
-def outcomes(jobs: Sequence[Job], address: str, warn: Warn) -> Iterator[dict[str, Any]]:
+def outcomes(
+    jobs: Sequence[Job], address: str, patience: float, warn: Warn
+) -> Iterator[dict[str, Any]]:
     """Bake all runs and yield what became of each, in the order in which they end.
 
     Closing the generator takes back what has not ended.
 
+    Args:
+        jobs: The runs.
+        address: The scheduler's, tcp://HOST:PORT.
+        patience: How long (s) to look for a scheduler that was lost.
+        warn: Hears what is wrong, in one line.
+
     Raises:
         Lost: The scheduler cannot be reached.
     """
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # we tell what happens ourselves
+    logging.disable(
+        logging.CRITICAL
+    )  # Dask logs tracebacks of every broken connection: we say it in a line
     remaining = {job["run"]: job for job in jobs}
     client = _connect(address, CONNECT_SECONDS)
     vain = 0
@@ -55,7 +64,7 @@ def outcomes(jobs: Sequence[Job], address: str, warn: Warn) -> Iterator[dict[str
         try:
             yield from _collect(client, remaining, address, warn)
         except _Disconnected:
-            warn(f"the connection to {address} is lost; trying again for {RECONNECT_SECONDS:g} s")
+            warn(f"the connection to {address} is lost; trying again for {patience:g} s")
         finally:
             _close(client)
         if not remaining:
@@ -63,7 +72,7 @@ def outcomes(jobs: Sequence[Job], address: str, warn: Warn) -> Iterator[dict[str
         vain = vain + 1 if len(remaining) == before else 0
         if vain == MOST_VAIN_CONNECTIONS:
             raise Lost(f"the connection to {address} broke {vain} times without a run ending on it")
-        client = _connect(address, RECONNECT_SECONDS)
+        client = _connect(address, patience)
 
 
 def _connect(address: str, seconds: float) -> Any:
@@ -74,8 +83,6 @@ def _connect(address: str, seconds: float) -> Any:
         left = until - time.monotonic()
         try:
             return distributed.Client(address, timeout=max(1.0, left))
-        except ValueError as error:
-            raise Lost(f"--scheduler {address} is no address; accepted: tcp://HOST:PORT") from error
         except OSError as error:  # a refusal, or the time is up
             if time.monotonic() >= until:
                 raise Lost(f"no scheduler answers at {address}") from error
@@ -85,19 +92,29 @@ def _connect(address: str, seconds: float) -> Any:
 def _collect(
     client: Any, remaining: dict[str, Job], address: str, warn: Warn
 ) -> Iterator[dict[str, Any]]:
-    """Hand over what remains, take it out as it ends, and yield its outcome."""
+    """Hand over what remains, take it out as it ends, and yield its outcome.
+
+    Dask gives a run up when several workers have died that had it, also if it was another one that they died of. Such runs
+    are baked again at the end, one at a time: then it is clear which one is at fault.
+    """
     import distributed
 
-    token, task = uuid.uuid4().hex[:8], _task()
-    waiting = deque(remaining)
+    task = _task()
+
+    def hand_over(name: str) -> None:
+        key = f"boucle-{uuid.uuid4().hex[:8]}-{name}"
+        futures[client.submit(task, str(SCRIPTS), dict(remaining[name]), key=key)] = name
+
+    waiting, suspects = deque(remaining), deque[str]()
+    suspected: set[str] = set()
     futures: dict[Any, str] = {}
     has_workers = True
     try:
-        while futures or waiting:
+        while futures or waiting or suspects:
             while waiting and len(futures) < MOST_HANDED_OVER:
-                name = waiting.popleft()
-                job, key = dict(remaining[name]), f"boucle-{token}-{name}"
-                futures[client.submit(task, str(SCRIPTS), job, key=key, pure=False)] = name
+                hand_over(waiting.popleft())
+            if not futures:
+                hand_over(suspects.popleft())
             try:
                 pending = list(futures)
                 done = distributed.wait(pending, SECONDS_BETWEEN_LOOKS, "FIRST_COMPLETED").done
@@ -109,10 +126,18 @@ def _collect(
             except distributed.CancelledError as error:
                 raise _Disconnected from error
             for future in done:
-                outcome = _outcome(future, remaining[futures[future]])
-                name = futures.pop(future)
+                name = futures[future]
+                try:
+                    outcome = _outcome(future, remaining[name])
+                except distributed.KilledWorker as error:
+                    if name not in suspected:
+                        del futures[future]
+                        suspected.add(name)
+                        suspects.append(name)
+                        continue
+                    outcome = record_failure(remaining[name], f"workers died over it ({error})")
+                del futures[future]
                 job = remaining.pop(name)
-                future.release()
                 yield outcome or record_failure(job, "its worker took the sweep for ended")
     finally:
         with contextlib.suppress(Exception):
@@ -139,6 +164,7 @@ def _outcome(future: Any, job: Job) -> dict[str, Any] | None:
 
     Raises:
         _Disconnected: Nothing, since it has been lost with the scheduler.
+        distributed.KilledWorker: Nothing, since workers died that had it.
     """
     import distributed
 
@@ -146,8 +172,8 @@ def _outcome(future: Any, job: Job) -> dict[str, Any] | None:
         raise _Disconnected
     try:
         return future.result(timeout=30)
-    except distributed.KilledWorker as error:
-        return record_failure(job, f"workers died while they baked it ({error})")
+    except distributed.KilledWorker:
+        raise
     except (TimeoutError, distributed.CancelledError, distributed.comm.CommClosedError) as error:
         raise _Disconnected from error
     except Exception as error:  # noqa: BLE001 - whatever a worker raises is that run's failure alone

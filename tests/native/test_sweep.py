@@ -208,7 +208,7 @@ def test_resume_leaves_whole_runs_alone_and_bakes_torn_missing_and_failed_ones(
         assert is_new == (run.name in torn), run.name
 
 
-def test_a_sweep_begins_anew_only_where_nothing_is_lost(run_sweep, grid, tmp_path, small_scene):
+def test_a_sweep_begins_anew_only_where_nothing_is_lost(run_sweep, grid, small_scene):
     path = grid()
     run_sweep(path, "--out", "out", "--resume", "--quiet")  # with nothing to resume it starts
     done = run_sweep(path, "--out", "out", code=2)
@@ -245,15 +245,14 @@ def test_a_run_that_kills_its_process_every_time_fails_alone(start_sweep, grid, 
     path = grid("[0.1, 0.2]", 'set = { "scene.frames" = [1, 100000] }')
     process = start_sweep(path, "--out", "out", "--workers", 1)
     parts, seen = tmp_path / "out" / "parts", set()
+
+    def baked_now():
+        caches = parts.glob("*/000.*/sheet.pc2")
+        return {cache.parent.name for cache in caches} - seen
+
     for _ in range(3):
-        wait_for(
-            lambda: {
-                p
-                for p in parts.glob("*/000.*")
-                if p.name not in seen and (p / "sheet.pc2").exists()
-            }
-        )
-        seen |= {path.name for path in parts.glob("*/000.*")}
+        wait_for(baked_now)
+        seen |= baked_now()
         os.kill(workers_of(process)[0], signal.SIGKILL)
     wait_for(lambda: list(parts.glob("*/001.*")))
     process.send_signal(signal.SIGINT)

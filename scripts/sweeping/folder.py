@@ -46,16 +46,19 @@ class Folder:
             resume: Go on with what is there.
 
         Raises:
-            Other: It holds a sweep and `resume` is not asked for, or another sweep.
+            Other: It holds runs and `resume` is not asked for, or those of another sweep.
             OSError: It cannot be written.
         """
         known = read_json(self.path / SWEEP)
-        if known is not None and not resume:
+        if not (self.runs.is_dir() and any(self.runs.iterdir())):
+            known = None  # nothing is lost if another sweep begins here
+            shutil.rmtree(self.failed, ignore_errors=True)
+        elif known is None:
+            raise Other(f"{self.path} holds runs of no known sweep; accepted: another folder")
+        elif not resume:
             raise Other(
                 f"{self.path} holds a sweep; accepted: --resume to go on, or another folder"
             )
-        if known is None and self.runs.is_dir() and any(self.runs.iterdir()):
-            raise Other(f"{self.path} holds runs of no known sweep; accepted: another folder")
         if known is not None and known.get("boucle") != head["boucle"]:
             raise Other(
                 f"{self.path} was begun by Boucle {known.get('boucle')} and this is "

@@ -9,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -293,6 +294,46 @@ def test_a_run_plays_without_the_add_on(new_blender, kind):
         shown, addon=False, path=folder / "out" / "played.blend", name=name, frame=first
     )
     assert max(abs(a - b) for a, b in zip(before, expected, strict=True)) > 1e-3
+
+
+def make_shot(path):
+    """A cloth before a camera, to be rendered small."""
+    import bpy
+
+    make_file(path, end="10")
+    scene = bpy.context.scene
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.location, camera.rotation_euler = (0.0, -4.0, -0.3), (1.5708, 0.0, 0.0)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    sun = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+    sun.rotation_euler, sun.data.energy = (1.0, 0.0, 0.0), 3.0
+    scene.collection.objects.link(sun)
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples, scene.cycles.use_denoising = 1, False
+    scene.render.resolution_x = scene.render.resolution_y = 48
+    scene.render.filepath = "//frames/"
+    scene.frame_start, scene.frame_end, scene.frame_step = 1, 10, 9
+    scene.world = bpy.data.worlds.new("World")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+
+
+def test_a_run_is_rendered_without_the_add_on(new_blender):
+    from PIL import Image, ImageChops
+
+    folder = new_blender.folder
+    new_blender.run(make_shot, path=folder / "shot.blend")
+    path = folder / "sweep.toml"
+    head = "[sweep]\nscene = 'shot.blend'\nmethod = 'list'\nset = { 'scenes[0].gravity' = [6, 0, 0] }\n"
+    path.write_text(f"{head}[[run]]\n'{DATA_PATH}' = 5\n")
+    run_sweep(path, "--out", folder / "out", "--no-sheet")
+    run = folder / "out" / "runs" / "000"
+    play_run(new_blender, run, "--render-anim", file=folder / "shot.blend")
+    frames = sorted((folder / "frames").iterdir())
+    assert [frame.name for frame in frames] == ["0001.png", "0010.png"]
+    with Image.open(frames[0]) as first, Image.open(frames[1]) as last:
+        changed = ImageChops.difference(first.convert("L"), last.convert("L"))
+    assert np.count_nonzero(np.asarray(changed) > 20) > 20, "the cloth has moved"
 
 
 def test_what_cannot_be_played_is_told_in_one_line(new_blender, shot):

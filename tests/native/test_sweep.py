@@ -221,6 +221,14 @@ def test_a_sweep_begins_anew_only_where_nothing_is_lost(run_sweep, grid, small_s
     assert "has changed" in run_sweep(path, "--out", "out", "--resume", code=2).stderr
 
 
+def test_a_sweep_without_any_whole_run_may_be_mended_and_begun_again(run_sweep, grid, tmp_path):
+    run_sweep(grid("[-1, -2]"), "--out", "out", code=3)
+    run_sweep(grid("[0.1]"), "--out", "out")
+    assert not (tmp_path / "out" / "failed").exists()
+    assert len(list((tmp_path / "out" / "runs").iterdir())) == 2
+    assert len(json.loads((tmp_path / "out" / "sweep.json").read_text())["runs"]) == 2
+
+
 def test_a_killed_worker_loses_nothing_and_its_run_is_baked_again(
     run_sweep, start_sweep, grid, tmp_path
 ):

@@ -199,3 +199,10 @@ def test_a_scene_that_is_missing_is_named(read, tmp_path):
 def test_the_middle_of_a_logarithmic_range_is_the_geometric_mean():
     middle = sampling.Range(10, 1000, 3, is_log=True).values()[1]
     assert middle == pytest.approx(100, rel=1e-15)
+
+
+def test_the_example_is_accepted_and_its_keys_are_known(scenes, run_bake):
+    sweep = description.read(scenes / "sweeps" / "sphere.toml")
+    assert len(sweep.runs) == 16
+    words = [*sweep.overrides(sweep.runs[3]), "scene.frames=[1, 2]"]
+    assert run_bake(sweep.scene, "--out", "out", "--quiet", "--set", *words).returncode == 0

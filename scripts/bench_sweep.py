@@ -3,11 +3,13 @@
 A Latin hypercube of a hanging curtain of 24² vertices and 24 frames, whole sweeps with everything that belongs to them but the
 table and the sheet: processes that start, folders, certificates. One process and more take turns, so that each meets the
 same load of the machine; the middle of all rounds counts, and every run must have the same bits in all of them.
-`BOUCLE_BENCH=quick` takes fewer runs and rounds.
+Other work on the machine takes from what more processes can gain: `bare` is that gain for processes that only count, in the
+same rounds, and `CPU s` what all processes together took. `BOUCLE_BENCH=quick` takes fewer runs and rounds.
 """
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import tempfile
 import time
@@ -35,6 +37,8 @@ set = {{ "cloth.0.grid.vertices" = [24, 24], "scene.frames" = [1, 24] }}
 """
 RUNS, ROUNDS = 32, 5
 QUICK_RUNS, QUICK_ROUNDS = 16, 2
+COUNTS = 120_000_000
+"""Steps of the bare count: some seconds."""
 TARGET = 1.8
 """What two processes on two cores bake, in times of one."""
 
@@ -46,6 +50,8 @@ def bench() -> dict[str, Any]:
     cores = core_count()
     counts = [count for count in (1, 2, 4, 8, 16) if count <= max(2, cores)]
     times: dict[int, list[float]] = {count: [] for count in counts}
+    bare: dict[int, list[float]] = {count: [] for count in counts}
+    cpu: dict[int, list[float]] = {count: [] for count in counts}
     hashes = set()
     with tempfile.TemporaryDirectory() as folder:
         scene = ROOT / "tests" / "scenes" / "curtain.toml"
@@ -55,8 +61,11 @@ def bench() -> dict[str, Any]:
         for number in range(rounds):
             for count in counts:
                 out = Path(folder) / f"{number}_{count}"
+                cpu_before = cpu_of_children()
                 seconds, bits = sweep_once(plan, out, count)
+                cpu[count].append(cpu_of_children() - cpu_before)
                 times[count].append(seconds)
+                bare[count].append(count_up(count))
                 hashes.add(bits)
     rows = [
         {
@@ -65,16 +74,15 @@ def bench() -> dict[str, Any]:
             "seconds_least": min(times[count]),
             "seconds_most": max(times[count]),
             "runs_per_minute": 60 * runs / median(times[count]),
-            "ratio": median([a / b for a, b in zip(times[1], times[count], strict=True)]),
+            "cpu_seconds": median(cpu[count]),
+            "ratio": median(ratios(times[1], times[count])),
+            "bare_ratio": median(ratios(bare[1], bare[count])),
         }
         for count in counts
     ]
     print(f"{runs} runs, {rounds} rounds, {cores} cores; the same bits: {len(hashes) == 1}")
-    print(
-        table(
-            ["processes", "s", "least", "most", "runs/min", "ratio"], [[*r.values()] for r in rows]
-        )
-    )
+    head = ["processes", "s", "least", "most", "runs/min", "CPU s", "ratio", "bare"]
+    print(table(head, [[*row.values()] for row in rows]))
     ratio = rows[1]["ratio"]
     print(verdict(f"{TARGET} times one process with two ({ratio:.2f})", ratio >= TARGET))
     return {
@@ -84,6 +92,34 @@ def bench() -> dict[str, Any]:
         "same_bits": len(hashes) == 1,
         "rows": rows,
     }
+
+
+def ratios(ones: list[float], many: list[float]) -> list[float]:
+    """How many times as fast the second was, round by round."""
+    return [one / other for one, other in zip(ones, many, strict=True)]
+
+
+def cpu_of_children() -> float:
+    """Seconds of processor that the processes took which this one started and which have ended."""
+    times = os.times()
+    return times.children_user + times.children_system
+
+
+def count_up(processes: int) -> float:
+    """Seconds in which some processes do a fixed amount of work that needs nothing but processors."""
+    context = multiprocessing.get_context("spawn")
+    parts = [context.Process(target=_count, args=(COUNTS // processes,)) for _ in range(processes)]
+    started = time.perf_counter()
+    for part in parts:
+        part.start()
+    for part in parts:
+        part.join()
+    return time.perf_counter() - started
+
+
+def _count(steps: int) -> None:
+    for _ in range(steps):
+        pass
 
 
 def sweep_once(plan: description.Sweep, out: Path, processes: int) -> tuple[float, tuple[str, ...]]:

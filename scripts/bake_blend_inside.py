@@ -12,11 +12,16 @@ import re
 import signal
 import sys
 import time
-import tomllib
 import unicodedata
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from typing import Any
+
+if __name__ == "__main__":
+    sys.path.append(os.path.dirname(os.path.abspath(__file__)))  # Blender's --python does not
+
+import blend_settings
+from blend_settings import WrongInput
 
 MODULE = "bl_ext.user_default.boucle"
 MARK = "@boucle "
@@ -26,10 +31,6 @@ REPORT_SECONDS = 5.0
 OLDEST = (4, 2)
 
 Tell = Callable[[Mapping[str, Any]], None]
-
-
-class WrongInput(Exception):
-    """The file or the command line is wrong; one sentence."""
 
 
 def addon(name: str) -> Any:
@@ -45,7 +46,7 @@ def bake_file(request: Mapping[str, Any], tell: Tell, is_stopped: Callable[[], b
         scenes = cloths_by_scene(request["path"])
         if request["out"]:
             refuse_shared_files([cloth.name for cloth, _ in scenes])
-        own_values = override(request["overrides"])
+        own_values = blend_settings.change(request["overrides"])
         return Baker(request, tell, is_stopped, own_values).bake(scenes)
     except WrongInput as wrong:
         tell({"kind": "complaint", "text": str(wrong)})
@@ -106,72 +107,6 @@ def refuse_shared_files(names: Sequence[str]) -> None:
             )
 
 
-def override(words: Sequence[str]) -> list[tuple[str, str, Any]]:
-    """Set properties of cloths, "OBJECT.property=value" in TOML, and return what they were: object, property, value."""
-    import bpy
-
-    own_values = []
-    for text in words:
-        target, equals, written = text.partition("=")
-        name, dot, key = target.strip().rpartition(".")
-        if not equals or not dot:
-            raise WrongInput(f"--set {text}; accepted: OBJECT.property=value")
-        obj = bpy.data.objects.get(name)
-        names = [obj.name for obj in addon("bridge.registry").local_cloths()]
-        if obj is None or obj.name not in names:
-            raise WrongInput(
-                f'--set {text}: "{name}" is no Boucle cloth; accepted: {listed(names)}'
-            )
-        own_values.append((name, key, set_property(obj, key, written, text)))
-    return own_values
-
-
-def set_property(obj: Any, key: str, written: str, text: str) -> Any:
-    """Set one property and return what it was. What Blender itself would cut without a word is refused."""
-    properties = obj.boucle.bl_rna.properties
-    settable = [p.identifier for p in properties if not p.is_readonly and not p.is_hidden]
-    settable = [name for name in settable if name not in {"name", "rna_type", "enabled"}]
-    if key not in settable:
-        raise WrongInput(f'--set {text}: "{key}" is no setting; accepted: {listed(settable)}')
-    try:
-        value = tomllib.loads(f"value = {written.strip()}")["value"]
-    except tomllib.TOMLDecodeError as error:
-        raise WrongInput(f"--set {text}: {written.strip()} is no TOML value ({error})") from error
-    prop = properties[key]
-    if prop.type == "FLOAT" and isinstance(value, int) and not isinstance(value, bool):
-        value = float(value)
-    if prop.type in {"INT", "FLOAT"}:
-        check_range(prop, value, text)
-    if prop.type == "BOOLEAN" and not isinstance(value, bool):
-        raise WrongInput(f"--set {text}; accepted: true or false")
-    before = getattr(obj.boucle, key)
-    before = tuple(before) if getattr(prop, "is_array", False) else before
-    try:
-        setattr(obj.boucle, key, value)
-    except (TypeError, ValueError) as error:
-        reason = str(error).rpartition(": ")[2]
-        raise WrongInput(f"--set {text} is not accepted ({' '.join(reason.split())})") from error
-    return before
-
-
-def check_range(prop: Any, value: Any, text: str) -> None:
-    """Refuse numbers that are none, or out of range."""
-    numbers = value if isinstance(value, list) else [value]
-    kinds = int if prop.type == "INT" else (int, float)
-    for number in numbers:
-        is_number = isinstance(number, kinds) and not isinstance(number, bool)
-        if not is_number or not prop.hard_min <= number <= prop.hard_max:
-            kind = "a whole number" if prop.type == "INT" else "a number"
-            raise WrongInput(
-                f"--set {text}; accepted: {kind} from {prop.hard_min:g} to {prop.hard_max:g}"
-            )
-
-
-def listed(names: Sequence[str]) -> str:
-    """Names for a sentence."""
-    return ", ".join(f'"{name}"' for name in names) or "none"
-
-
 class Baker:
     """Bakes the cloths of a file: those that collide with each other together, others one after another."""
 
@@ -180,13 +115,13 @@ class Baker:
         request: Mapping[str, Any],
         tell: Tell,
         is_stopped: Callable[[], bool],
-        own_values: Sequence[tuple[str, str, Any]],
+        own_values: Sequence[tuple[blend_settings.Setting, Any]],
     ) -> None:
         self.request = request
         self.tell = tell
         self.is_stopped = is_stopped
         self.own_values = own_values
-        """What --set has changed for this bake: object, property, the file's own value."""
+        """What --set has changed for this bake, and the file's own value."""
         self.out: str | None = request["out"]
         self.bakes: list[Any] = []
         self._reported = time.monotonic()
@@ -315,8 +250,8 @@ class Baker:
         """Save the .blend with its own settings, so that it plays the bake."""
         import bpy
 
-        for name, key, value in reversed(self.own_values):
-            setattr(bpy.data.objects[name].boucle, key, value)
+        for setting, value in reversed(self.own_values):
+            setting.write(value)
         try:
             bpy.ops.wm.save_mainfile()
         except RuntimeError as error:

@@ -81,6 +81,7 @@ def main(words: list[str]) -> int:
     import bench_explicit
     import bench_fabric
     import bench_solver
+    import bench_sweep
 
     entries = {
         "explicit": bench_explicit.bench,
@@ -88,6 +89,7 @@ def main(words: list[str]) -> int:
         "solver": bench_solver.bench,
         "contact": bench_contact.bench,
         "fabric": bench_fabric.bench,
+        "sweep": bench_sweep.bench,
     }
     names = list(entries) if words == ["all"] else words
     unknown = [name for name in names if name not in entries]

@@ -18,7 +18,7 @@ from environment import SCRIPTS, VENV, Failed, Missing, heading, run, venv_progr
 
 def build(_arguments: list[str]) -> None:
     """the set-up alone: .venv with the release module and everything that the scripts need"""
-    environment.set_up()
+    environment.set_up(sweeps=True)
 
 
 def test(arguments: list[str]) -> None:

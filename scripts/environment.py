@@ -248,12 +248,17 @@ def install_module(venv: Path, digest: str) -> None:
         stamp.write_text(digest, encoding="utf-8")
 
 
-def set_up(*, other_blenders: bool = False) -> None:
-    """Bring .venv (and, on request, those of the other Blender versions) to the state of the sources."""
+def set_up(*, other_blenders: bool = False, sweeps: bool = False) -> None:
+    """Bring .venv to the state of the sources.
+
+    Args:
+        other_blenders: Those of the other Blender versions, too.
+        sweeps: With what `sweep.py` takes for clusters and Parquet tables, which it else installs when it is asked for them.
+    """
     require_rust()
     with exclusive():
         digest = sources_digest()
-        ensure_venv(VENV, "requirements.txt")
+        ensure_venv(VENV, "requirements.txt", *(["requirements-sweep.txt"] if sweeps else []))
         install_module(VENV, digest)
         for version in OTHER_BLENDERS if other_blenders else ():
             venv = blender_venv(version)

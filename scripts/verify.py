@@ -82,7 +82,7 @@ def check() -> None:
 
 def test(arguments: list[str]) -> bool:
     """Run the Rust tests, then pytest with `arguments`; print the closing line; True if all is well."""
-    set_up(other_blenders=True)
+    set_up(other_blenders=True, sweeps=True)
     count = Count()
     with heading("Rust tests"):
         run_cargo_test(count)

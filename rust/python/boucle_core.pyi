@@ -251,6 +251,23 @@ class Simulation:
     def read_intersections(self, cloth: int, out: Buffer) -> None:
         """Fill out, float32 (n,), with the number of edges and triangles at each vertex that pass through others."""
 
+    def read_corners(self, cloth: int, out: Buffer) -> None:
+        """Fill out, float32 or float64 (c, 3), with the position (m) of each corner of each face, in the order of the faces.
+
+        Where a cloth is torn, the corners of a vertex as it was given are in several places; other functions tell of the piece
+        that keeps its number.
+        """
+
+    def torn_edges(self, cloth: int) -> list[tuple[int, int]]:
+        """List the edges that are torn, by their vertices as given, in the order in which they tore."""
+
+    def edge_tension(self, cloth: int) -> list[tuple[int, int, float]]:
+        """List the edges of the faces as they are now: both vertices, and the tension (N) along the edge.
+
+        Of springs it is their pull, of fabric the stress along the edge over a width as that of the triangles beside it: what
+        `[tear] force` is compared with.
+        """
+
     def overstretched_edges(self, cloth: int) -> list[tuple[int, int, float]]:
         """List the mesh edges that are longer than the deformation rate allows: both vertices and the strain, worst first.
 

@@ -1,5 +1,6 @@
 //! What is inside a `Simulation`: its assembly while it is whole, cloths and colliders by the numbers that Python gives.
 
+use boucle_geometry::Vector;
 use boucle_scene::{Assembly, Error};
 use boucle_solver::{Cloth, Collider};
 use pyo3::prelude::*;
@@ -29,7 +30,7 @@ impl Simulation {
         outcome
     }
 
-    /// Fills `out` with a number for each vertex of a cloth.
+    /// Fills `out` with a number for each vertex of a cloth as it was given: of what is torn, for the piece that keeps its number.
     pub(crate) fn read_numbers(
         &mut self,
         py: Python<'_>,
@@ -37,9 +38,26 @@ impl Simulation {
         out: &Bound<'_, PyAny>,
         of: fn(&boucle_solver::Simulation, usize) -> Vec<f32>,
     ) -> PyResult<()> {
-        let index = self.cloth(py, cloth)?.0;
-        let numbers = self.with(py, |assembly| Ok(of(&assembly.simulation, index)))?;
+        let (index, given) = self.cloth(py, cloth)?;
+        let count = given.positions.len();
+        let mut numbers = self.with(py, |assembly| Ok(of(&assembly.simulation, index)))?;
+        numbers.truncate(count);
         buffers::write_numbers(out, &numbers, "float32")
+    }
+
+    /// Fills `out` with a vector for each vertex of a cloth as it was given.
+    pub(crate) fn read_vectors(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        out: &Bound<'_, PyAny>,
+        of: fn(&boucle_solver::Simulation, usize) -> Vec<Vector>,
+    ) -> PyResult<()> {
+        let (index, given) = self.cloth(py, cloth)?;
+        let count = given.positions.len();
+        let mut rows = self.with(py, |assembly| Ok(of(&assembly.simulation, index)))?;
+        rows.truncate(count);
+        buffers::write_rows(out, &rows)
     }
 
     pub(crate) fn assembly(&self, py: Python<'_>) -> PyResult<&Assembly> {
@@ -62,11 +80,11 @@ impl Simulation {
         }
     }
 
-    /// The cloth of a number that Python gave.
+    /// The cloth of a number that Python gave, as it was given: whole.
     pub(crate) fn cloth(&self, py: Python<'_>, cloth: i64) -> PyResult<(usize, &Cloth)> {
         let simulation = &self.assembly(py)?.simulation;
         match usize::try_from(cloth) {
-            Ok(index) if index < simulation.cloth_count() => Ok((index, simulation.cloth(index))),
+            Ok(index) if index < simulation.cloth_count() => Ok((index, simulation.given(index))),
             _ => {
                 let accepted = format!("0 to {}", simulation.cloth_count().saturating_sub(1));
                 Err(refuse(py, format!("cloth = {cloth}; accepted: {accepted}")))

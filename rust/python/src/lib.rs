@@ -17,11 +17,13 @@ mod access;
 mod bake;
 mod boundary;
 mod buffers;
+mod faults;
 mod geometry;
 mod interrupter;
 mod meshes;
 mod presets;
 mod simulation;
+mod springs;
 
 use pyo3::prelude::*;
 
@@ -41,7 +43,7 @@ fn boucle_core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(geometry::edge_edge_impact, module)?)?;
     module.add_function(wrap_pyfunction!(geometry::edge_crosses_triangle, module)?)?;
     if std::env::var_os("BOUCLE_TEST_HOOKS").is_some() {
-        module.add_function(wrap_pyfunction!(simulation::panic_for_tests, module)?)?;
+        module.add_function(wrap_pyfunction!(faults::panic_for_tests, module)?)?;
     }
     Ok(())
 }

@@ -11,6 +11,7 @@ use crate::boundary::{compute, parse_json, raise, refuse};
 use crate::buffers;
 use crate::interrupter::Interrupter;
 use crate::meshes::{self, MeshArrays};
+use crate::springs;
 
 /// The bytes of a cloth's springs: ends, kinds, rest lengths, stiffnesses, dampings.
 type SpringBytes<'py> = (Bytes<'py>, Bytes<'py>, Bytes<'py>, Bytes<'py>, Bytes<'py>);
@@ -289,9 +290,7 @@ impl Simulation {
         cloth: i64,
         out: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        let index = self.cloth(py, cloth)?.0;
-        let rows = self.with(py, |assembly| Ok(assembly.simulation.positions(index)))?;
-        buffers::write_rows(out, &rows)
+        self.read_vectors(py, cloth, out, boucle_solver::Simulation::positions)
     }
 
     fn read_velocities(
@@ -300,9 +299,25 @@ impl Simulation {
         cloth: i64,
         out: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
+        self.read_vectors(py, cloth, out, boucle_solver::Simulation::velocities)
+    }
+
+    fn read_corners(&mut self, py: Python<'_>, cloth: i64, out: &Bound<'_, PyAny>) -> PyResult<()> {
         let index = self.cloth(py, cloth)?.0;
-        let rows = self.with(py, |assembly| Ok(assembly.simulation.velocities(index)))?;
+        let rows = self.with(py, |assembly| Ok(assembly.simulation.corner_positions(index)))?;
         buffers::write_rows(out, &rows)
+    }
+
+    fn torn_edges(&self, py: Python<'_>, cloth: i64) -> PyResult<Vec<(u32, u32)>> {
+        let index = self.cloth(py, cloth)?.0;
+        let torn = self.assembly(py)?.simulation.torn_edges(index);
+        Ok(torn.into_iter().map(|[a, b]| (a, b)).collect())
+    }
+
+    fn edge_tension(&mut self, py: Python<'_>, cloth: i64) -> PyResult<Vec<(u32, u32, f64)>> {
+        let index = self.cloth(py, cloth)?.0;
+        let edges = self.with(py, |assembly| Ok(assembly.simulation.edge_tension(index)))?;
+        Ok(edges.into_iter().map(|([a, b], tension)| (a, b, tension)).collect())
     }
 
     fn read_strain(&mut self, py: Python<'_>, cloth: i64, out: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -350,7 +365,7 @@ impl Simulation {
     fn read_springs<'py>(&mut self, py: Python<'py>, cloth: i64) -> PyResult<SpringBytes<'py>> {
         let index = self.cloth(py, cloth)?.0;
         let [ends, kinds, lengths, stiffnesses, dampings] =
-            self.with(py, |assembly| Ok(spring_bytes(assembly, index)))?;
+            self.with(py, |assembly| Ok(springs::bytes(assembly, index)))?;
         let bytes = |bytes: Vec<u8>| PyBytes::new(py, &bytes);
         Ok((bytes(ends), bytes(kinds), bytes(lengths), bytes(stiffnesses), bytes(dampings)))
     }
@@ -365,36 +380,10 @@ impl Simulation {
     }
 }
 
-/// Panics inside the boundary, on a simulation if one is given.
-#[pyfunction]
-#[pyo3(name = "_panic_for_tests", signature = (simulation = None))]
-pub(crate) fn panic_for_tests(
-    py: Python<'_>,
-    simulation: Option<PyRefMut<'_, Simulation>>,
-) -> PyResult<()> {
-    match simulation {
-        Some(mut simulation) => simulation.with(py, |_| panic!("asked to panic\nby a test")),
-        None => compute(py, || panic!("asked to panic\nby a test")),
-    }
-}
-
 /// The number of threads that Python gave.
 pub(crate) fn thread_count(py: Python<'_>, threads: i64) -> PyResult<usize> {
     let refused = || refuse(py, format!("threads = {threads}; accepted: 1 to 1024, or 0"));
     let count = usize::try_from(threads).map_err(|_| refused())?;
     boucle_scene::limits::threads(count).map_err(|error| raise(py, &error))?;
     Ok(count)
-}
-
-/// A cloth's springs as native-endian bytes.
-fn spring_bytes(assembly: &Assembly, cloth: usize) -> [Vec<u8>; 5] {
-    let springs = &assembly.simulation.cloth(cloth).springs;
-    let stiffness = assembly.simulation.spring_stiffness(cloth);
-    [
-        springs.iter().flat_map(|spring| spring.ends).flat_map(u32::to_ne_bytes).collect(),
-        springs.iter().map(|spring| spring.kind as u8).collect(),
-        springs.iter().flat_map(|spring| spring.rest_length.to_ne_bytes()).collect(),
-        stiffness.into_iter().flat_map(f64::to_ne_bytes).collect(),
-        springs.iter().flat_map(|spring| spring.damping.to_ne_bytes()).collect(),
-    ]
 }

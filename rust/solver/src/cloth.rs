@@ -10,7 +10,7 @@ use crate::force::{Bulk, Pressure};
 use crate::law::{Spring, springs_of_mesh};
 use crate::material::{PinMaterial, SpringMaterial, within_one};
 use crate::tailoring::Tailoring;
-use crate::tear::Tear;
+use crate::tear::{Tear, pieces, spread};
 
 /// Farthest coordinate (m) accepted: beyond it differences lose the precision that springs need.
 pub(crate) const FARTHEST: f64 = 1e6;
@@ -158,21 +158,14 @@ impl Cloth {
         self.origins.get(vertex as usize).copied()
     }
 
-    /// What is given for each vertex as given, for each of its pieces.
+    /// What is given for each vertex as given, for each present one.
     pub(crate) fn over_pieces<T: Clone>(&self, values: &[T]) -> Vec<T> {
-        if self.origins.is_empty() || values.is_empty() {
-            return values.to_vec();
-        }
-        self.origins.iter().map(|&origin| values[origin as usize].clone()).collect()
+        if self.origins.is_empty() { values.to_vec() } else { spread(&self.origins, values) }
     }
 
     /// The present vertices, in order, that some vertices as given are or have become.
-    pub(crate) fn pieces_of(&self, vertices: &[u32]) -> impl Iterator<Item = u32> {
-        let mut is_chosen = vec![false; self.positions.len()];
-        vertices.iter().for_each(|&vertex| is_chosen[vertex as usize] = true);
-        (0..self.positions.len() as u32).filter(move |&vertex| {
-            self.as_given(vertex).is_some_and(|origin| is_chosen[origin as usize])
-        })
+    pub(crate) fn pieces_of(&self, vertices: &[u32]) -> Vec<u32> {
+        if self.origins.is_empty() { vertices.to_vec() } else { pieces(&self.origins, vertices) }
     }
 
     /// Area (m²) of its faces at rest.

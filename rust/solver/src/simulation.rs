@@ -8,6 +8,7 @@ mod holding;
 mod interrupt;
 mod placing;
 mod plan;
+mod reading;
 mod saved_shape;
 mod saved_tears;
 mod saving;
@@ -23,7 +24,7 @@ use boucle_geometry::Vector;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::awake::with_others_awake;
-use crate::certificate::{Certificate, length};
+use crate::certificate::Certificate;
 use crate::cloth::{Cloth, placed};
 use crate::collider::Collider;
 use crate::contact::Contacts;
@@ -35,11 +36,8 @@ use crate::grab::Grab;
 use crate::implicit::{Accuracy, Memory};
 use crate::interrupter::Interrupter;
 use crate::kernel::CHUNK;
-use crate::law::spring::Law;
 use crate::limit::Limit;
-use crate::material::SpringKind;
 use crate::method::Method;
-use crate::overstretch::{OverstretchedEdge, overstretched};
 use crate::perturbation::perturb;
 use crate::pins::Pins;
 use crate::rest::Rest;
@@ -351,52 +349,6 @@ impl Simulation {
             vertex: particle - self.bases[cloth] as usize,
             cloth: self.cloths[cloth].name.clone(),
         }
-    }
-
-    /// Positions (m) of a cloth's vertices, world space.
-    #[must_use]
-    pub fn positions(&self, cloth: usize) -> Vec<Vector> {
-        self.particles(cloth).map(|particle| self.state.position.get(particle)).collect()
-    }
-
-    /// Velocities (m/s) of a cloth's vertices.
-    #[must_use]
-    pub fn velocities(&self, cloth: usize) -> Vec<Vector> {
-        self.particles(cloth).map(|particle| self.state.velocity.get(particle)).collect()
-    }
-
-    /// The largest strain of the edges at each vertex of a cloth.
-    #[must_use]
-    pub fn vertex_strain(&self, cloth: usize) -> Vec<f32> {
-        let (cloth, base) = (&self.cloths[cloth], self.bases[cloth]);
-        let mut strain = vec![-1.0_f32; cloth.positions.len()];
-        for spring in cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Stretch) {
-            let elongation = length(&self.state, spring.ends, base) / spring.rest_length - 1.0;
-            for end in spring.ends {
-                let most = &mut strain[end as usize];
-                *most = most.max(elongation as f32);
-            }
-        }
-        strain
-    }
-
-    /// The mesh edges of a cloth that are longer than its deformation rate allows, by more than a tenth of a percent of
-    /// their rest length; the worst first. None where the limiter is [`Limiter::None`](crate::Limiter::None).
-    #[must_use]
-    pub fn overstretched_edges(&self, cloth: usize) -> Vec<OverstretchedEdge> {
-        overstretched(&self.cloths[cloth], self.bases[cloth], &self.state)
-    }
-
-    /// The present stiffness (N/m) of each spring of a cloth: what equation 6 makes of it, if it is the limiter.
-    #[must_use]
-    pub fn spring_stiffness(&self, cloth: usize) -> Vec<f64> {
-        let (cloth, base) = (&self.cloths[cloth], self.bases[cloth]);
-        let law = Law::of(cloth);
-        let stiffness = cloth.springs.iter().map(|spring| {
-            let ratio = length(&self.state, spring.ends, base) / spring.rest_length;
-            law.stiffness_at(spring.stiffness, ratio)
-        });
-        stiffness.collect()
     }
 
     fn frame_duration(&self) -> f64 {

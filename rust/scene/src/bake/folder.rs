@@ -107,7 +107,7 @@ impl Folder {
         for (index, cache) in self.caches.iter_mut().enumerate() {
             let simulation = &assembly.simulation;
             let points = if torn::tears(simulation, index) {
-                torn::corner_positions(simulation, index)
+                simulation.corner_positions(index)
             } else {
                 simulation.positions(index)
             };

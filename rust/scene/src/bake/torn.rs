@@ -25,12 +25,6 @@ pub(super) fn tears(simulation: &Simulation, cloth: usize) -> bool {
     simulation.cloth(cloth).tear.is_some()
 }
 
-/// Positions (m) of the corners of a cloth's faces.
-pub(super) fn corner_positions(simulation: &Simulation, cloth: usize) -> Vec<Vector> {
-    let positions = simulation.positions(cloth);
-    simulation.corners(cloth).into_iter().map(|vertex| positions[vertex as usize]).collect()
-}
-
 /// Writes cache and mesh of a cloth as it is torn by now, from the cache of its corners.
 pub(super) fn gather(folder: &Path, simulation: &Simulation, cloth: usize) -> Result<()> {
     let own = simulation.cloth(cloth);

@@ -166,7 +166,9 @@ pub(super) fn vertex_mask(region: &Region, cloths: &[Cloth]) -> Option<Vec<bool>
         let is_of = of.is_none_or(|of| of == number);
         mask.resize(base + cloth.positions.len(), is_of && vertices.is_none());
         if let Some(vertices) = vertices.filter(|_| is_of) {
-            cloth.pieces_of(vertices).for_each(|vertex| mask[base + vertex as usize] = true);
+            for vertex in cloth.pieces_of(vertices) {
+                mask[base + vertex as usize] = true;
+            }
         }
     }
     Some(mask)

@@ -7,6 +7,7 @@ use super::saved_shape::SavedShape;
 use crate::checkpoint::Checkpoint;
 use crate::cloth::Cloth;
 use crate::error::Result;
+use crate::fabric::Crease;
 use crate::goals::Goal;
 use crate::grab::Grab;
 use crate::implicit::Memory;
@@ -122,7 +123,7 @@ impl Simulation {
         let find = |corners: [u32; 3]| {
             let corners = corners.map(|corner| from[corner as usize]);
             let place = creases.binary_search_by_key(&corners, |(own, _)| *own);
-            place.map_or_else(|_| Default::default(), |place| creases[place].1)
+            place.map_or_else(|_| Crease::default(), |place| creases[place].1)
         };
         shape.creases = next.system.fabrics.creased_faces().map(find).collect();
         shape

@@ -36,7 +36,9 @@ impl Simulation {
             for edge in torn {
                 split.tear(edge);
             }
-            undone.into_iter().for_each(|seam| split.undo(seam));
+            for seam in undone {
+                split.undo(seam);
+            }
             splits.push(Some(Box::new(split)));
         }
         numbers.0.is_empty().then_some(())?;

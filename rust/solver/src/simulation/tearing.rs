@@ -31,6 +31,14 @@ impl Simulation {
         )
     }
 
+    /// Positions (m) of the corners of a cloth's faces, in order.
+    #[must_use]
+    pub fn corner_positions(&self, cloth: usize) -> Vec<Vector> {
+        let base = self.bases[cloth];
+        let corners = self.corners(cloth).into_iter();
+        corners.map(|vertex| self.state.position.get((base + vertex) as usize)).collect()
+    }
+
     /// Of each vertex of a cloth, the one that it was as the cloth was given. Those that tearing has added come after all others.
     #[must_use]
     pub fn origins(&self, cloth: usize) -> Vec<u32> {
@@ -99,7 +107,9 @@ impl Simulation {
                 edges.push(edge);
                 is_busy[end as usize] = true;
             }
-            ends.iter().for_each(|end| is_busy[*end as usize] = true);
+            for end in ends {
+                is_busy[end as usize] = true;
+            }
         }
         edges
     }

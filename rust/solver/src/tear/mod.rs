@@ -13,6 +13,7 @@ mod split;
 mod tests;
 
 pub(crate) use fan::Fan;
+pub(crate) use pieces::{pieces, spread};
 pub(crate) use split::Split;
 
 use crate::cloth::Cloth;

@@ -11,6 +11,25 @@ use crate::law::{Spring, springs_of_mesh};
 use crate::material::{SpringKind, StiffnessFrom};
 use crate::tailoring::{Sewing, Tailoring};
 
+/// What is given for each vertex as given, for each of its pieces, of which those are told; nothing if nothing is.
+pub(crate) fn spread<T: Clone>(origins: &[u32], values: &[T]) -> Vec<T> {
+    if values.is_empty() {
+        return Vec::new();
+    }
+    origins.iter().map(|&origin| values[origin as usize].clone()).collect()
+}
+
+/// All pieces of some vertices as given, in order.
+pub(crate) fn pieces(origins: &[u32], vertices: &[u32]) -> Vec<u32> {
+    let count = origins.iter().max().map_or(0, |last| *last as usize + 1);
+    let mut is_chosen = vec![false; count];
+    for &vertex in vertices {
+        is_chosen[vertex as usize] = true;
+    }
+    let pieces = (0..).zip(origins).filter(|(_, origin)| is_chosen[**origin as usize]);
+    pieces.map(|(piece, _)| piece).collect()
+}
+
 impl Split {
     /// The cloth as it is torn: whatever it was given for a vertex, all of its pieces have; masses are shared by area.
     pub(crate) fn cloth(&self) -> Cloth {
@@ -53,20 +72,8 @@ impl Split {
         }
     }
 
-    /// What is given for each vertex, for each of its pieces; nothing if nothing is.
-    pub(crate) fn spread<T: Clone>(&self, values: &[T]) -> Vec<T> {
-        if values.is_empty() {
-            return Vec::new();
-        }
-        self.origins.iter().map(|&origin| values[origin as usize].clone()).collect()
-    }
-
-    /// All pieces of some vertices, in order.
-    fn pieces(&self, vertices: &[u32]) -> Vec<u32> {
-        let mut is_chosen = vec![false; self.given.positions.len()];
-        vertices.iter().for_each(|&vertex| is_chosen[vertex as usize] = true);
-        let pieces = (0..).zip(&self.origins).filter(|(_, origin)| is_chosen[**origin as usize]);
-        pieces.map(|(piece, _)| piece).collect()
+    fn spread<T: Clone>(&self, values: &[T]) -> Vec<T> {
+        spread(&self.origins, values)
     }
 
     fn pins(&self) -> (Vec<u32>, Vec<f64>) {
@@ -81,8 +88,8 @@ impl Split {
 
     fn collision(&self, given: &Collision) -> Collision {
         Collision {
-            excluded_from_self: self.pieces(&given.excluded_from_self),
-            excluded_from_colliders: self.pieces(&given.excluded_from_colliders),
+            excluded_from_self: pieces(&self.origins, &given.excluded_from_self),
+            excluded_from_colliders: pieces(&self.origins, &given.excluded_from_colliders),
             ..given.clone()
         }
     }
@@ -101,7 +108,9 @@ impl Split {
         let rest: Vec<Vector> = self.spread(self.given.rest());
         for (face, corners) in mesh.faces().enumerate() {
             let share = mesh.vector_area(face, &rest).norm() / corners.len() as f64;
-            corners.iter().for_each(|&corner| areas[corner as usize] += share);
+            for &corner in corners {
+                areas[corner as usize] += share;
+            }
         }
         let mut sums = vec![0.0; self.given.positions.len()];
         for (area, &origin) in areas.iter().zip(&self.origins) {
@@ -165,7 +174,9 @@ impl Split {
         now.sort_unstable();
         now.dedup();
         let mut copies = vec![0; self.edges.len()];
-        now.iter().for_each(|(edge, _)| copies[*edge as usize] += 1);
+        for (edge, _) in now {
+            copies[edge as usize] += 1;
+        }
         copies
     }
 }

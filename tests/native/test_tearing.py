@@ -1,0 +1,133 @@
+"""Tearing through the module: what it tells, what it takes of cloth that is torn, and the caches that a bake leaves."""
+
+import json
+from pathlib import Path
+
+import boucle_core
+import numpy as np
+import pytest
+
+STORM = Path(__file__).parent.parent / "scenes" / "storm.toml"
+COLUMNS, ROWS = 6, 9
+ROW = 4
+
+
+def grid():
+    """(positions, starts, corners) of a sheet that hangs in the plane y = 0; rows number upward."""
+    c, r = np.meshgrid(np.arange(COLUMNS), np.arange(ROWS))
+    positions = 0.1 * np.column_stack([c.ravel(), np.zeros(c.size), r.ravel()])
+    first = (r[:-1, :-1] * COLUMNS + c[:-1, :-1]).ravel()
+    corners = np.column_stack([first, first + 1, first + COLUMNS + 1, first + COLUMNS])
+    starts = np.arange(0, corners.size, 4, dtype=np.int32)
+    return positions, starts, corners.astype(np.int32).ravel()
+
+
+def simulation(**tear):
+    """The sheet, which opens across a row at frame 4."""
+    pairs = [[ROW * COLUMNS + i, ROW * COLUMNS + i + 1] for i in range(COLUMNS - 1)]
+    top = list(range(COLUMNS * (ROWS - 1), COLUMNS * ROWS))
+    tear = {"enabled": True, "openings": [{"frame": 4, "pairs": pairs}], **tear}
+    springs = {"stretch": 500.0, "shear": 0.0, "bend": 0.0}
+    cloth = {"name": "sheet", "springs": springs, "pins": {"vertices": top}, "tear": tear}
+    scene = {"cloth": [cloth], "collision": {"self": False}}
+    return boucle_core.Simulation(json.dumps(scene), [grid()], 1)
+
+
+def pc2(path):
+    """(samples, points, 3) (m)."""
+    header = np.fromfile(path, dtype="<i4", count=8)
+    return np.fromfile(path, dtype="<f4", offset=32).reshape(header[7], header[4], 3)
+
+
+def corners_of(made):
+    """(c, 3) (m)."""
+    out = np.empty((len(grid()[2]), 3))
+    made.read_corners(0, out)
+    return out
+
+
+def test_a_row_that_opens_parts_the_sheet():
+    made = simulation()
+    for _ in range(3):
+        made.advance()
+    # As it opens its sides are drawn apart, by a hair.
+    torn = made.torn_edges(0)
+    assert sorted(torn) == [(ROW * COLUMNS + i, ROW * COLUMNS + i + 1) for i in range(COLUMNS - 1)]
+    for _ in range(12):
+        made.advance()
+    at, vertices = corners_of(made), grid()[2]
+    middle = at[vertices == ROW * COLUMNS + 2]
+    assert len(middle) == 4
+    assert np.ptp(middle[:, 2]) > 0.3
+    # Everything else still holds together.
+    for vertex in range(ROWS * COLUMNS):
+        if vertex // COLUMNS != ROW:
+            assert np.ptp(at[vertices == vertex], axis=0).max() == 0.0
+    assert made.vertex_count(0) == ROWS * COLUMNS
+    out = np.empty((ROWS * COLUMNS, 3))
+    made.read_positions(0, out)
+    assert np.isfinite(out).all()
+
+
+def test_a_torn_sheet_takes_what_is_told_of_the_sheet_as_it_was():
+    made = simulation()
+    for _ in range(6):
+        made.advance()
+    positions = grid()[0]
+    made.set_pin_targets(0, positions + np.array([0.0, 0.0, 0.2]))
+    made.set_pin_weights(0, np.ones(len(positions)))
+    made.set_rest(0, 0.9 * positions)
+    made.advance()
+    at, vertices = corners_of(made), grid()[2]
+    top = vertices >= COLUMNS * (ROWS - 1)
+    assert at[top, 2] == pytest.approx(0.1 * (ROWS - 1) + 0.2)
+    made.set_positions(0, positions)
+    assert corners_of(made) == pytest.approx(positions[vertices])
+    made.release_pins(0)
+    made.advance()
+
+
+def test_the_tension_of_edges_is_the_weight_below_them():
+    made = simulation(openings=[], force=1e6)
+    for _ in range(240):
+        made.advance()
+    pulls = {(a, b): pull for a, b, pull in made.edge_tension(0)}
+    below = [pulls[(ROW * COLUMNS + i, (ROW + 1) * COLUMNS + i)] for i in range(COLUMNS)]
+    weight = 0.2 * 0.5 * 0.1 * (ROW + 0.5) * 9.81
+    assert sum(below) == pytest.approx(weight, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("tear", "words"),
+    [
+        ({"openings": []}, "nothing says when it tears"),
+        ({"strength": [1.0] * 100}, r"cloth\.sheet\.tear\.strength = 100; accepted: at most 54"),
+        ({"openings": [{"frame": 1, "pairs": [[0, 9]]}]}, "vertices 0 and 9 are to part"),
+        ({"force": -1.0}, r"cloth\.sheet\.tear\.force = -1\.0; accepted: 0 to 1e12"),
+        ({"strength": [2.0]}, "tear strength is 2; accepted: 0 to 1"),
+    ],
+)
+def test_what_a_sheet_cannot_tear_by_is_refused(tear, words):
+    with pytest.raises(boucle_core.SceneError, match=words):
+        simulation(**tear)
+
+
+def test_a_flag_in_a_storm_leaves_caches_of_all_its_pieces(tmp_path):
+    small = ["cloth.0.grid.vertices=[19, 13]", "tear.force=2.0"]
+    report = boucle_core.bake(str(STORM), str(tmp_path), frames=(1, 40), overrides=small)
+    frames = report["frames"]
+    assert len(frames) == 40
+    assert all(frame["intersections"] == 0 for frame in frames)
+    lines = (tmp_path / "flag.obj").read_text().splitlines()
+    vertices = sum(line.startswith("v ") for line in lines)
+    faces = [
+        [int(word.split("/")[0]) - 1 for word in line.split()[1:]]
+        for line in lines
+        if line.startswith("f ")
+    ]
+    assert len(faces) == 18 * 12
+    samples = pc2(tmp_path / "flag.pc2")
+    corners = pc2(tmp_path / "flag.corners.pc2")
+    assert samples.shape == (40, vertices, 3)
+    assert vertices > 19 * 13
+    assert (samples[:, np.concatenate(faces)] == corners).all()

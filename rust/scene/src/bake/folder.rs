@@ -45,13 +45,7 @@ impl Folder {
         report: &Report,
         first_kept: i32,
     ) -> Result<Self> {
-        let old = self.path.join(checkpoint::FILE_NAME);
-        match fs::remove_file(&old) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(Error::cache(&old, "removed", &error));
-            }
-            _ => {}
-        }
+        forget(&self.path.join(checkpoint::FILE_NAME))?;
         self.write_report(report)?;
         let simulation = &assembly.simulation;
         for index in 0..simulation.cloth_count() {
@@ -61,6 +55,10 @@ impl Folder {
             obj::write(&mut bytes, &cloth.mesh, &cloth.positions)
                 .map_err(|error| Error::cache(&path, "written", &error))?;
             atomic::replace(&path, &bytes, Durability::Process)?;
+            if torn::tears(simulation, index) {
+                // What the end of the bake will leave.
+                forget(&self.path.join(format!("{}.pc2", cloth.name)))?;
+            }
             let (path, point_count) = self.cache_of(assembly, index);
             self.caches.push(pc2::Writer::create(&path, point_count, first_kept)?);
         }
@@ -135,6 +133,16 @@ impl Folder {
     pub(super) fn write_checkpoint(&self, checkpoint: &Checkpoint) -> Result<()> {
         self.caches.iter().try_for_each(pc2::Writer::sync)?;
         checkpoint.write(&self.path.join(checkpoint::FILE_NAME))
+    }
+}
+
+/// Removes a file, if it is there.
+fn forget(path: &Path) -> Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+            Err(Error::cache(path, "removed", &error))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -20,17 +20,28 @@ impl Simulation {
         if tears == self.tears() {
             return Some(());
         }
+        let splits = self.splits_of(tears)?;
+        let before = std::mem::replace(&mut self.splits, splits);
+        let (cloths, from) = self.pieces();
+        let became = self.become_cloths(cloths, &from);
+        if became.is_err() {
+            self.splits = before;
+        }
+        became.ok()
+    }
+
+    /// The cloths as such numbers say that they are torn; none if the numbers are not of these cloths.
+    pub(super) fn splits_of(&self, tears: &[f64]) -> Option<Vec<Option<Box<Split>>>> {
         let mut numbers = Numbers(tears);
         let mut splits = Vec::new();
         for split in &self.splits {
-            let [torn, undone] = [numbers.counted()?, numbers.counted()?];
+            let [torn, undone] = [numbers.counted()?, numbers.counted()?]
+                .map(|list| list.iter().map(|number| *number as u32).collect::<Vec<_>>());
             let Some(own) = split else {
-                splits.push(None);
                 (torn.is_empty() && undone.is_empty()).then_some(())?;
+                splits.push(None);
                 continue;
             };
-            let [torn, undone] =
-                [torn, undone].map(|list| list.iter().map(|n| *n as u32).collect::<Vec<_>>());
             own.has([&torn, &undone]).then_some(())?;
             let mut split = Split::new(own.given().clone());
             for edge in torn {
@@ -41,13 +52,6 @@ impl Simulation {
             }
             splits.push(Some(Box::new(split)));
         }
-        numbers.0.is_empty().then_some(())?;
-        let before = std::mem::replace(&mut self.splits, splits);
-        let (cloths, from) = self.pieces();
-        let became = self.become_cloths(cloths, &from);
-        if became.is_err() {
-            self.splits = before;
-        }
-        became.ok()
+        numbers.0.is_empty().then_some(splits)
     }
 }

@@ -125,6 +125,7 @@ mod tests {
     use crate::implicit::Memory;
     use crate::material::SpringMaterial;
     use crate::settings::Settings;
+    use crate::tear::{Opening, Tear};
     use boucle_geometry::{Mesh, Vector};
 
     fn of(change: impl Fn(Cloth) -> Cloth) -> Simulation {
@@ -194,5 +195,38 @@ mod tests {
         }
         simulation.restore(&told.checkpoint()).expect("a whole one");
         assert!(simulation.checkpoint() == told.checkpoint());
+    }
+
+    /// The two triangles part at the corner that is not pinned.
+    #[test]
+    fn a_refused_checkpoint_of_whole_cloth_leaves_torn_cloth_as_it_is() {
+        let opening = Opening { frame: 2, pairs: vec![[0, 2]] };
+        let tear = Tear { openings: vec![opening], ..Tear::default() };
+        let first = Settings::default().first_frame;
+        let mut simulation = of(|cloth| Cloth { tear: Some(tear.clone()), ..cloth });
+        let whole = simulation.checkpoint();
+        while simulation.frame() < 2.max(first + 1) {
+            simulation.advance().expect("a frame");
+        }
+        simulation.advance().expect("a frame");
+        assert_eq!(simulation.positions(0).len(), 5);
+        let before = simulation.checkpoint();
+        let spoils: [fn(&mut Checkpoint); 4] = [
+            |bad| bad.shape.push(0.0),
+            |bad| bad.tears = vec![1.0, 99.0, 0.0],
+            |bad| bad.tears.push(0.0),
+            |bad| bad.pins.clear(),
+        ];
+        for (number, spoil) in spoils.iter().enumerate() {
+            let mut bad = Checkpoint::from_bytes(&whole).expect("a whole one");
+            spoil(&mut bad);
+            let refused = simulation.restore(&bad.to_bytes());
+            assert!(matches!(refused, Err(Error::BadCheckpoint(_))), "{number}: {refused:?}");
+            assert!(simulation.checkpoint() == before, "{number}");
+        }
+        simulation.restore(&whole).expect("a whole one");
+        assert_eq!(simulation.positions(0).len(), 4);
+        simulation.restore(&before).expect("a whole one");
+        assert!(simulation.checkpoint() == before);
     }
 }

@@ -97,6 +97,7 @@ impl Simulation {
     /// Tears what must tear at the end of a frame.
     pub(super) fn tear(&mut self) -> Result<()> {
         let mut has_torn = false;
+        let before = self.tears();
         for cloth in 0..self.cloths.len() {
             if let Some(tear) = self.cloths[cloth].tear.clone() {
                 let edges = self.broken_edges(cloth, &tear);
@@ -111,7 +112,13 @@ impl Simulation {
                 }
             }
         }
-        if has_torn { self.follow_tears() } else { Ok(()) }
+        if !has_torn {
+            return Ok(());
+        }
+        self.follow_tears().inspect_err(|_| {
+            // Pieces that no step is short enough for: the cloth stays as it was.
+            self.splits = self.splits_of(&before).unwrap_or_default();
+        })
     }
 
     /// The edges to tear, by number as given: of those that are pulled too hard, the hardest pulled first, one in any

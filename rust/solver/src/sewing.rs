@@ -72,6 +72,27 @@ impl Seams {
         self.seams.iter().map(|seam| seam.ends)
     }
 
+    /// The force (N) of the seam between two particles at these positions; 0 if there is none.
+    pub(crate) fn pull(&self, ends: [u32; 2], positions: &Coordinates) -> f64 {
+        let Ok(place) = self.seams.binary_search_by_key(&ends, |seam| seam.ends) else {
+            return 0.0;
+        };
+        let seam = &self.seams[place];
+        let pull = seam.stiffness * positions.distance_squared(ends[0], ends[1]).sqrt();
+        match (seam.is_welded, seam.force_max > 0.0) {
+            (true, _) => WELDED * pull,
+            (false, true) => pull.min(seam.force_max),
+            (false, false) => pull,
+        }
+    }
+
+    /// Gives the seams of a cloth the stiffness with which it was given.
+    pub(crate) fn put_given(&self, number: usize, cloth: &mut Cloth) {
+        for seam in self.seams.iter().filter(|seam| seam.cloth == number) {
+            cloth.springs[seam.spring].stiffness = seam.stiffness;
+        }
+    }
+
     /// Which seams are welded.
     pub(crate) fn welded(&self) -> impl Iterator<Item = bool> {
         self.seams.iter().map(|seam| seam.is_welded)

@@ -146,8 +146,13 @@ impl Simulation {
             |cloth: &Cloth| cloth.tear.as_ref().map(|_| Box::new(Split::new(cloth.clone())));
         let splits = cloths.iter().map(split).collect();
         let pool = (Arc::new(threads), Interrupter::default());
-        let made = Self::assemble(cloths, (colliders, winds), settings, pool)?;
-        Ok(Self { digest, splits, ..made })
+        let made = Self::assemble(cloths, (colliders, winds), settings, pool);
+        let mut simulation = Self { digest, splits, ..made };
+        simulation.shrink_from_the_first()?;
+        simulation.crease();
+        simulation.intersect();
+        simulation.plan()?;
+        Ok(simulation)
     }
 
     /// A simulation of what has been checked.
@@ -156,7 +161,7 @@ impl Simulation {
         (colliders, winds): (Vec<Collider>, Vec<Wind>),
         settings: Settings,
         (threads, interrupter): (Arc<ThreadPool>, Interrupter),
-    ) -> Result<Self> {
+    ) -> Self {
         let bases: Vec<u32> = placed(&cloths).map(|(_, base)| base).collect();
         let positions: Vec<Vector> =
             cloths.iter().flat_map(|cloth| cloth.positions.iter().copied()).collect();
@@ -198,11 +203,7 @@ impl Simulation {
         };
         simulation.follow_holds();
         simulation.follow_pins();
-        simulation.shrink_from_the_first()?;
-        simulation.crease();
-        simulation.intersect();
-        simulation.plan()?;
-        Ok(simulation)
+        simulation
     }
 
     /// The frame that the state belongs to.
@@ -217,7 +218,7 @@ impl Simulation {
         self.cloths.len()
     }
 
-    /// A cloth as it was given.
+    /// A cloth as it is now: as it was given, or in the pieces that it is torn into.
     ///
     /// # Panics
     /// When there is no cloth of this number; so do the other functions that take one.
@@ -263,15 +264,16 @@ impl Simulation {
         self.contacts.end_frame();
         self.clipped = self.contacts.take_clipped();
         self.iterations_taken = self.method.take_iterations();
-        self.tear()?;
-        self.intersect();
         self.substeps_taken = substeps;
         let accuracy = self.accuracy_now();
         if let Some(memory) = self.method.memory_mut() {
             memory.substeps = accuracy.after(substeps, memory.mean_error(substeps));
             memory.error = 0.0;
         }
-        Ok(self.certificate())
+        let contacts = self.contacts.count();
+        self.tear();
+        self.intersect();
+        Ok(Certificate { contacts, ..self.certificate() })
     }
 
     /// Keeps the state, to fall back on it.

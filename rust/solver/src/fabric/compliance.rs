@@ -153,7 +153,7 @@ impl Compliance {
         }
         let scale = |sum: &f64| if *sum > 0.0 { 1.0 / sum.sqrt() } else { 0.0 };
         let mut scale: Vec<f64> = sums.iter().map(scale).collect();
-        let variation = variation::entries(hinge_count, faces, &compliances);
+        let (variation, most) = variation::entries(hinge_count, faces, &compliances);
         let (rows, variation) = (Rows::all(&entries, &scale), Rows::all(&variation, &scale));
         scale.resize(hinge_count.next_multiple_of(LANES), 0.0);
         Self {
@@ -161,7 +161,7 @@ impl Compliance {
             variation,
             scale: scale.as_chunks().0.iter().map(|own| own.map(|of| of as f32)).collect(),
             steps: steps(bounds),
-            largest: (1.0 + LEFT) * (1.0 + (1.0 + LEFT) * variation::MOST) / bounds[0],
+            largest: (1.0 + LEFT) * (1.0 + (1.0 + LEFT) * most) / bounds[0],
             arch: Arch::new(),
         }
     }

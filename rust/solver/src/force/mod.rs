@@ -22,6 +22,7 @@ pub(crate) use filling::Level;
 pub use flow::Flow;
 pub use pressure::Pressure;
 pub(crate) use pressure::{PressureScratch, Pressures};
+pub(crate) use sea::NUMBERS as SEA_NUMBERS;
 pub use water::{Bulk, Water, Wave};
 pub use weather::{Gusts, Turbulence};
 pub(crate) use wind::check_velocity as check_wind_velocity;

@@ -86,6 +86,9 @@ pub(super) struct SeaScratch {
     pub(super) pushed: Vec<Pushed>,
 }
 
+/// Numbers of a checkpoint before those of wetness: level, current, drift.
+pub(crate) const NUMBERS: usize = 7;
+
 impl Sea {
     pub(super) fn new(water: Water, cloths: &[Cloth], gravity: &Vector) -> Self {
         let (mut floats, mut hulls, mut soaking) = (Vec::new(), Vec::new(), Vec::new());
@@ -183,7 +186,7 @@ impl Sea {
 
     /// Whether such numbers are of this water.
     pub(crate) fn fits(&self, numbers: &[f64]) -> bool {
-        let Some((head, wetness)) = numbers.split_first_chunk::<7>() else { return false };
+        let Some((head, wetness)) = numbers.split_first_chunk::<NUMBERS>() else { return false };
         wetness.len() == self.wetness.len()
             && head.iter().all(|number| number.is_finite())
             && wetness.iter().all(|wetness| (0.0..=1.0).contains(wetness))
@@ -194,7 +197,7 @@ impl Sea {
         let vector = |first: usize| Vector::from_column_slice(&numbers[first..first + 3]);
         self.set(numbers[0], vector(1));
         self.drift = vector(4);
-        self.wetness.copy_from_slice(&numbers[7..]);
+        self.wetness.copy_from_slice(&numbers[NUMBERS..]);
     }
 
     fn depth(&self, place: &Vector) -> f64 {

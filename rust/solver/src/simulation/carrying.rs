@@ -6,8 +6,8 @@ use super::Simulation;
 use super::saved_shape::SavedShape;
 use crate::checkpoint::Checkpoint;
 use crate::cloth::Cloth;
-use crate::error::Result;
 use crate::fabric::Crease;
+use crate::force::SEA_NUMBERS;
 use crate::goals::Goal;
 use crate::grab::Grab;
 use crate::implicit::Memory;
@@ -36,11 +36,11 @@ fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
 impl Simulation {
     /// Goes on with other cloths in the place of its own, given of each of their particles the one that it has been until now.
     /// Vertices keep their numbers; new ones come after them.
-    pub(super) fn become_cloths(&mut self, cloths: Vec<Cloth>, from: &[u32]) -> Result<()> {
+    pub(super) fn become_cloths(&mut self, cloths: Vec<Cloth>, from: &[u32]) {
         let saved = self.saved();
         let surroundings = (self.colliders.clone(), self.winds.clone());
         let pool = (Arc::clone(&self.threads), self.interrupter.clone());
-        let mut next = Self::assemble(cloths, surroundings, self.settings.clone(), pool)?;
+        let mut next = Self::assemble(cloths, surroundings, self.settings.clone(), pool);
         next.digest = self.digest;
         next.splits = std::mem::take(&mut self.splits);
         let shape = self.shape_carried(&next, from);
@@ -49,7 +49,6 @@ impl Simulation {
         (next.clipped, next.iterations_taken) = (self.clipped, self.iterations_taken);
         next.accuracy = self.accuracy;
         *self = next;
-        Ok(())
     }
 
     /// A checkpoint of these cloths as one of the next.
@@ -65,11 +64,11 @@ impl Simulation {
             .goals
             .into_iter()
             .map(|goal| Goal { particle: self.now(next, goal.particle), ..goal });
-        let soaked = saved.water.len().checked_sub(self.state.len());
-        let water = match soaked {
-            Some(head) if head > 0 => {
-                let (head, wetness) = saved.water.split_at(head);
-                head.iter().copied().chain(from.iter().map(|&old| wetness[old as usize])).collect()
+        // Of cloth that takes up no water there is no wetness.
+        let water = match saved.water.split_at_checked(SEA_NUMBERS) {
+            Some((head, wetness)) if !wetness.is_empty() => {
+                let gathered = from.iter().map(|&old| wetness[old as usize]);
+                head.iter().copied().chain(gathered).collect()
             }
             _ => saved.water,
         };
@@ -145,7 +144,8 @@ impl Simulation {
             old.unwrap_or(spring.rest_length)
         });
         let hinges = next.system.fabrics.hinge_edges(cloth);
-        carried.chain(hinges.map(|ends| angles.get(before(ends)).unwrap_or(0.0))).collect()
+        let hinges = hinges.zip(next.system.fabrics.rest_angles(cloth));
+        carried.chain(hinges.map(|(ends, own)| angles.get(before(ends)).unwrap_or(own))).collect()
     }
 }
 

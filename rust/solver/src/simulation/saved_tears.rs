@@ -20,18 +20,14 @@ impl Simulation {
         if tears == self.tears() {
             return Some(());
         }
-        let splits = self.splits_of(tears)?;
-        let before = std::mem::replace(&mut self.splits, splits);
+        self.splits = self.splits_of(tears)?;
         let (cloths, from) = self.pieces();
-        let became = self.become_cloths(cloths, &from);
-        if became.is_err() {
-            self.splits = before;
-        }
-        became.ok()
+        self.become_cloths(cloths, &from);
+        Some(())
     }
 
     /// The cloths as such numbers say that they are torn; none if the numbers are not of these cloths.
-    pub(super) fn splits_of(&self, tears: &[f64]) -> Option<Vec<Option<Box<Split>>>> {
+    fn splits_of(&self, tears: &[f64]) -> Option<Vec<Option<Box<Split>>>> {
         let mut numbers = Numbers(tears);
         let mut splits = Vec::new();
         for split in &self.splits {

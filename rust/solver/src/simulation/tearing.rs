@@ -4,7 +4,6 @@ use boucle_geometry::Vector;
 
 use super::Simulation;
 use crate::cloth::{Cloth, placed};
-use crate::error::Result;
 use crate::material::SpringKind;
 use crate::state::State;
 use crate::tear::{Fan, Split, Tear};
@@ -94,8 +93,8 @@ impl Simulation {
         self.splits[cloth].as_ref().map_or(&self.cloths[cloth], |split| split.given())
     }
 
-    /// Tears what must tear at the end of a frame.
-    pub(super) fn tear(&mut self) -> Result<()> {
+    /// Tears what must tear at the end of a frame. Where crumpled cloth leaves no room for two sides, it waits for the next.
+    pub(super) fn tear(&mut self) {
         let mut has_torn = false;
         let before = self.tears();
         for cloth in 0..self.cloths.len() {
@@ -113,21 +112,26 @@ impl Simulation {
             }
         }
         if !has_torn {
-            return Ok(());
+            return;
         }
-        self.follow_tears().inspect_err(|_| {
-            // Pieces that no step is short enough for: the cloth stays as it was.
-            self.splits = self.splits_of(&before).unwrap_or_default();
-        })
+        let (saved, shape) = (self.saved(), self.saved_shape());
+        let told = (self.clipped, self.iterations_taken);
+        if !self.follow_tears() && self.tear_alike(&before).is_some() {
+            self.take(saved, shape);
+            (self.clipped, self.iterations_taken) = told;
+        }
+        self.good.clone_from(&self.state);
+        self.good_memory = self.method.memory().cloned();
     }
 
     /// The edges to tear, by number as given: of those that are pulled too hard, the hardest pulled first, one in any
     /// neighborhood, as the others bear less once it has given way. And those whose time has come.
     fn broken_edges(&self, cloth: usize, tear: &Tear) -> Vec<u32> {
         let Some(split) = &self.splits[cloth] else { return Vec::new() };
-        let opening = tear.openings.iter().filter(|opening| opening.frame == self.frame);
+        let opening = tear.openings.iter().filter(|opening| opening.frame <= self.frame);
         let pairs = opening.flat_map(|opening| &opening.pairs);
         let mut edges: Vec<u32> = pairs.filter_map(|pair| split.edge_between(*pair)).collect();
+        edges.retain(|&edge| split.holds(edge));
         let mut broken = self.breaks(cloth, tear, split);
         broken.sort_by(|a, b| b.excess.total_cmp(&a.excess).then(a.ends.cmp(&b.ends)));
         let mut is_busy = vec![false; split.origins().len()];
@@ -175,7 +179,9 @@ impl Simulation {
         let [a, b] = ends;
         let mut sides: Vec<(bool, u32, u32, Fan)> = [(a, b), (b, a)]
             .into_iter()
-            .filter(|(center, _)| !self.system.is_pinned(base + *center as usize))
+            .filter(|(center, _)| {
+                !split.is_whole(*center) && !self.system.is_pinned(base + *center as usize)
+            })
             .filter_map(|(center, to)| {
                 let fan = Fan::around(split, split.corner_between(center, to)?);
                 Some((fan.is_closed(), center, to, fan))
@@ -191,31 +197,32 @@ impl Simulation {
     fn broken_seams(&self, cloth: usize, tear: &Tear) -> Vec<u32> {
         let Some(split) = &self.splits[cloth] else { return Vec::new() };
         let seams = split.seams();
-        let opening = tear.openings.iter().filter(|opening| opening.frame == self.frame);
-        let opening: Vec<[u32; 2]> = opening
+        let opening = tear.openings.iter().filter(|opening| opening.frame <= self.frame);
+        let mut opening: Vec<[u32; 2]> = opening
             .flat_map(|opening| &opening.pairs)
             .map(|&[a, b]| [a.min(b), a.max(b)])
             .collect();
+        opening.sort_unstable();
         let base = self.bases[cloth];
         let own = self.cloths[cloth].springs.iter();
         let held = own.filter(|spring| spring.kind == SpringKind::Sewing);
         let broken = held.filter(|seam| {
-            let [a, b] = seam.ends.map(|end| base + end);
-            let pull = seam.stiffness * self.state.position.distance_squared(a, b).sqrt();
-            opening.contains(&seam.ends) || tear.seam_force.is_some_and(|force| pull > force)
+            let ends = seam.ends.map(|end| base + end);
+            let pull = self.seams.pull(ends, &self.state.position);
+            opening.binary_search(&seam.ends).is_ok()
+                || tear.seam_force.is_some_and(|force| pull > force)
         });
-        broken
-            .filter_map(|seam| seams.iter().position(|ends| *ends == seam.ends))
-            .map(|number| number as u32)
-            .collect()
+        // Seams are sorted.
+        let numbers = broken.filter_map(|seam| seams.binary_search(&seam.ends).ok());
+        numbers.map(|number| number as u32).collect()
     }
 
-    /// Goes on with the cloths as they are torn now.
-    fn follow_tears(&mut self) -> Result<()> {
+    /// Goes on with the cloths as they are torn now, and says whether they pass through nothing that they did not before.
+    fn follow_tears(&mut self) -> bool {
         let (cloths, from) = self.pieces();
         let before: Vec<usize> = self.cloths.iter().map(|cloth| cloth.positions.len()).collect();
         let was_tangled = self.intersections.is_some_and(|count| count > 0);
-        self.become_cloths(cloths, &from)?;
+        self.become_cloths(cloths, &from);
         let mut parted: Vec<Parted> = before
             .into_iter()
             .enumerate()
@@ -225,7 +232,8 @@ impl Simulation {
         self.intersect();
         // Crumpled cloth may have no room there, but elsewhere.
         for attempt in 1..=ATTEMPTS {
-            if was_tangled || self.intersections.is_none_or(|count| count == 0) {
+            if parted.is_empty() || was_tangled || self.intersections.is_none_or(|count| count == 0)
+            {
                 break;
             }
             let stuck: Vec<u32> =
@@ -235,9 +243,7 @@ impl Simulation {
             self.shift(&parted, |one| one.way(attempt) - one.way(attempt - 1));
             self.intersect();
         }
-        self.good.clone_from(&self.state);
-        self.good_memory = self.method.memory().cloned();
-        Ok(())
+        was_tangled || self.intersections.is_none_or(|count| count == 0)
     }
 
     /// The cloths as they are torn, and of each of their particles the one that it has been until now.
@@ -247,7 +253,7 @@ impl Simulation {
         for ((cloth, base), split) in placed(&self.cloths).zip(&self.splits) {
             let Some(split) = split else {
                 from.extend((0..cloth.positions.len() as u32).map(|vertex| base + vertex));
-                cloths.push(cloth.clone());
+                cloths.push(self.as_given(cloths.len()));
                 continue;
             };
             // A new vertex comes from where a corner of it was.
@@ -260,6 +266,16 @@ impl Simulation {
             cloths.push(split.cloth());
         }
         (cloths, from)
+    }
+
+    /// A cloth that does not tear, without what has changed since it was given: that is carried over by itself.
+    fn as_given(&self, number: usize) -> Cloth {
+        let mut cloth = self.cloths[number].clone();
+        if let Some(rest) = &self.rests[number] {
+            rest.put_given(&mut cloth);
+        }
+        self.seams.put_given(number, &mut cloth);
+        cloth
     }
 
     /// What has just parted: vertices beyond so many, and those that they were one with.

@@ -84,12 +84,18 @@ impl Tear {
             return refuse(format!("{given} strengths are given; accepted: {count}, one a vertex"));
         }
         self.strength.iter().try_for_each(|&of| within_one(&format!("{at} strength"), of))?;
+        if cloth.mesh.vertex_count() != count || !cloth.mesh.loose_vertices().is_empty() {
+            return refuse(
+                "it is to tear, but has vertices without faces; accepted: meshes".to_owned(),
+            );
+        }
         let edges = cloth.mesh.edges();
         let seams = cloth.tailoring.sewing.iter().flat_map(|sewing| &sewing.seams);
-        let seams: Vec<[u32; 2]> = seams.copied().collect();
+        let mut seams: Vec<[u32; 2]> = seams.map(|&[a, b]| [a.min(b), a.max(b)]).collect();
+        seams.sort_unstable();
         for &[a, b] in self.openings.iter().flat_map(|opening| &opening.pairs) {
             let pair = [a.min(b), a.max(b)];
-            if edges.binary_search(&pair).is_err() && !seams.contains(&pair) {
+            if edges.binary_search(&pair).is_err() && seams.binary_search(&pair).is_err() {
                 return refuse(format!(
                     "vertices {a} and {b} are to part, which no edge of a face and no seam joins; \
                      accepted: the ends of an edge or of a seam"

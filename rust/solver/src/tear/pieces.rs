@@ -119,7 +119,7 @@ impl Split {
         let shares = areas.iter().zip(&self.origins);
         shares
             .map(|(area, &origin)| {
-                self.given.masses[origin as usize] * area / sums[origin as usize]
+                self.given.masses[origin as usize] * (area / sums[origin as usize])
             })
             .collect()
     }

@@ -100,6 +100,16 @@ impl Split {
         place.ok().map(|place| place as u32)
     }
 
+    /// Whether an edge is not torn.
+    pub(crate) fn holds(&self, edge: u32) -> bool {
+        !self.is_torn[edge as usize]
+    }
+
+    /// Whether a vertex never parts.
+    pub(crate) fn is_whole(&self, vertex: u32) -> bool {
+        self.is_whole[self.origins[vertex as usize] as usize]
+    }
+
     /// The seams as given.
     pub(crate) fn seams(&self) -> &[[u32; 2]] {
         self.given.tailoring.sewing.as_ref().map_or(&[], |sewing| &sewing.seams)

@@ -180,6 +180,10 @@ fn tears_are_the_same_on_any_number_of_threads_and_after_a_checkpoint() {
         again.restore(&whole).expect("of the same flag");
         assert!(again.torn_edges(0).is_empty());
         assert_eq!(again.checkpoint(), whole);
+        let mut fresh = flag(1, integrator);
+        run(&mut fresh, 12);
+        run(&mut again, 12);
+        assert_eq!(bits(&fresh), bits(&again), "{integrator:?}");
     }
 }
 
@@ -223,4 +227,79 @@ fn seams_come_undone_beyond_their_force_and_at_their_frame() {
     assert!(lowest(&simulation) > -1.0);
     run(&mut simulation, 24);
     assert!(lowest(&simulation) < -2.0);
+}
+
+/// Of a cloth that shrinks and is sewn, beside one that tears: nothing of it changes as the other does.
+#[test]
+fn another_cloth_does_not_notice_tears() {
+    let openings = (3..12).map(|frame| {
+        let first = (frame as u32 - 2) * COLUMNS;
+        let pairs = (0..COLUMNS - 1).map(|c| [first + c, first + c + 1]).collect();
+        Opening { frame, pairs }
+    });
+    let tear = Tear { openings: openings.collect(), ..Tear::default() };
+    let torn = hanging(&Mass::PerVertex(EACH), material([400.0, 100.0, 5.0]), tear);
+    let other = sheet([4, 4], 0.1, &Mass::Density(0.2), material([200.0, 50.0, 1.0]), &[0, 3]);
+    let seams = vec![[5, 10]];
+    let sewing = Sewing { seams, weld_distance: 1.0, ..Sewing::default() };
+    let positions = other.positions.iter().map(|x| x + Vector::x() * 5.0).collect();
+    let other = Cloth { positions, ..other }.sewn(sewing).expect("sewn");
+    let whole = Cloth { tear: None, ..torn.clone() };
+    let springs = |first: Cloth| {
+        let settings = settings(IntegratorKind::ImplicitEuler);
+        let cloths = vec![first, other.clone()];
+        let mut simulation = Simulation::new(cloths, Vec::new(), settings).expect("a simulation");
+        for frame in 0..14 {
+            let shrink = vec![0.02 * f64::from(frame); 16];
+            simulation.set_rest(1, None, Some(&shrink)).expect("accepted");
+            simulation.advance().expect("a frame");
+        }
+        assert_eq!(simulation.welded_seams(), 1);
+        let springs = &simulation.cloth(1).springs;
+        springs.iter().map(|s| (s.rest_length, s.stiffness)).collect::<Vec<_>>()
+    };
+    assert_eq!(springs(torn), springs(whole));
+}
+
+#[test]
+fn a_seam_that_bears_no_more_than_its_limit_does_not_come_undone_beyond_that() {
+    let cloth = sheet([4, 4], 0.1, &Mass::Density(0.2), material([200.0, 50.0, 1.0]), &[0, 3]);
+    let sewing = Sewing { seams: vec![[5, 15]], force_max: 0.01, ..Sewing::default() };
+    let cloth = cloth.sewn(sewing).expect("sewn");
+    let tear = Some(Tear { seam_force: Some(0.02), ..Tear::default() });
+    let mut simulation =
+        in_wind(Cloth { tear, ..cloth }, Vec::new(), settings(IntegratorKind::ImplicitEuler));
+    run(&mut simulation, 10);
+    assert_eq!(simulation.seam_gaps(0).len(), 1);
+}
+
+/// Without absorbency there is no wetness, and the numbers of the water are more than the vertices.
+#[test]
+fn a_scrap_in_water_tears() {
+    let mesh = boucle_geometry::Mesh::from_faces(4, &[[0, 1, 2], [0, 2, 3]]).expect("a mesh");
+    let positions = [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]];
+    let positions = positions.map(|[x, y]| Vector::new(x, y, 0.0)).to_vec();
+    let springs = material([100.0, 20.0, 1.0]);
+    let cloth = crate::sheets::cloth(mesh, positions, &Mass::Density(0.2), springs, &[]);
+    let openings = vec![Opening { frame: 5, pairs: vec![[0, 2]] }];
+    let tear = Some(Tear { openings, ..Tear::default() });
+    let water = Some(boucle_solver::Water::default());
+    let settings = Settings { water, ..settings(IntegratorKind::ImplicitEuler) };
+    let mut simulation = in_wind(Cloth { tear, ..cloth }, Vec::new(), settings);
+    run(&mut simulation, 10);
+    assert_eq!(simulation.positions(0).len(), 6);
+}
+
+/// A hard pin stays whole also after it is let go; nothing is torn there in vain.
+#[test]
+fn what_was_a_hard_pin_stays_whole() {
+    let mut simulation = flag(1, IntegratorKind::ImplicitEuler);
+    let pole: Vec<u32> = (0..16).map(|row| row * 16).collect();
+    simulation.release_pins(0, &pole);
+    run(&mut simulation, 20);
+    let origins = simulation.origins(0);
+    assert!(origins[256..].iter().all(|origin| !pole.contains(origin)));
+    let torn = simulation.torn_edges(0);
+    let around_pole = torn.iter().filter(|edge| pole.contains(&edge[0]) && pole.contains(&edge[1]));
+    assert_eq!(around_pole.count(), 0, "{torn:?}");
 }

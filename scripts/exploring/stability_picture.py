@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm
+from matplotlib.colors import LinearSegmentedColormap, LogNorm
 from matplotlib.figure import Figure
+
 from paper.looks import INK, page
 
 from .boundary import GROWN
@@ -33,7 +34,9 @@ WORDS = {
     "implicit_euler": "implicit Euler",
     "bdf2": "BDF2",
 }
-MARKS = {"symplectic_euler": "o", "verlet": "s", "leapfrog": "^", "rk4": "D"}
+MARKS = {"symplectic_euler": "o", "verlet": "+", "leapfrog": "x", "rk4": "D"}
+GROWTH_MAP = LinearSegmentedColormap.from_list("growth", ["#a9cfe8", "#f6f3ec", "#f0b583"])
+"""Pale, so that the boundaries stand out; from energy lost to energy gained."""
 
 
 def draw(undamped: Boundary, damped: Boundary, maps: list[Map], falling: Falling) -> Figure:
@@ -63,18 +66,23 @@ def _over(axes: Axes, found: Boundary, name: str, falling: Falling | None) -> No
         x = [getattr(point, name) for point in part.points]
         color, mark = COLORS[integrator], MARKS[integrator]
         axes.plot(x, 1000 * part.theory, color=color, lw=1.0)
-        axes.plot(x, 1000 * part.measured, mark, color=color, ms=4, label=WORDS[integrator])
+        size = {"o": 7.0, "D": 4.0}.get(mark, 5.0)
+        axes.plot(
+            x, 1000 * part.measured, mark, color=color, ms=size, mfc="none", label=WORDS[integrator]
+        )
         if integrator == "symplectic_euler":
-            axes.plot(x, 1000 * part.safe, ":", color=color, label="safe step of the panel, 2/w")
+            axes.plot(x, 1000 * part.safe, ":", color=color, label="its safe step in the panel")
     if falling is not None:
         # Steps go with the root of the mass: shown as if these sheets had the mass of the others.
         part = np.sqrt(values[len(values) // 2] / 0.01)
         y = 1000 * part * falling.measured
-        axes.plot(falling.stiffness, y, "x", color=INK, ms=5, label="falling and folding")
+        axes.plot(falling.stiffness, y, "*", color=INK, ms=5, label="the same sheet, falling")
     unit, held = ("N/m", "kg") if name == "stiffness" else ("kg", "N/m")
     word = "stretch stiffness" if name == "stiffness" else "mass of a particle"
-    axes.set(xscale="log", yscale="log", xlabel=f"{word} ({unit})", ylabel="largest stable step (ms)")
-    axes.set_title(f"undamped, {other} {values[len(values) // 2]:.3g} {held}", fontsize=10)
+    axes.set(
+        xscale="log", yscale="log", xlabel=f"{word} ({unit})", ylabel="largest stable step (ms)"
+    )
+    axes.set_title(f"{other} {values[len(values) // 2]:.3g} {held}; lines: theory", fontsize=10)
     axes.legend(fontsize=7, labelspacing=0.2)
 
 
@@ -86,7 +94,10 @@ def _errors(axes: Axes, found: Boundary) -> None:
         x = number + np.linspace(-0.35, 0.35, len(errors))
         axes.plot(x, errors, ".", color=COLORS[integrator], ms=2)
     axes.axhline(0.0, color=INK, lw=0.8)
-    names = [WORDS[integrator].replace(" ", "\n") for integrator in UNDAMPED_LIMIT]
+    names = [
+        WORDS[integrator].replace("Runge-Kutta 4", "RK4").replace(" ", "\n")
+        for integrator in UNDAMPED_LIMIT
+    ]
     axes.set_xticks(range(len(names)), names, fontsize=8)
     axes.set(ylim=(-8, 8), ylabel="measured - theory (%)")
     axes.set_title(f"all {len(found.points)} undamped boundaries", fontsize=10)
@@ -102,17 +113,17 @@ def _map(axes: Axes, each: Map, found: Boundary) -> object:
         each.steps,
         growth.T,
         norm=LogNorm(GROWN**-1, GROWN),
-        cmap="PuOr_r",
+        cmap=GROWTH_MAP,
         shading="nearest",
         rasterized=True,
     )
     ratios = [0.5 * w * point.damping_time for point in found.points]
     axes.plot(ratios, w * found.theory, color=INK, lw=1.4, label="theory")
     axes.plot(ratios, w * found.measured, "o", color=INK, mfc="white", ms=3.5, label="measured")
-    axes.plot(ratios, w * found.safe, ":", color=INK, lw=1.2, label="safe step of the panel")
+    axes.plot(ratios, w * found.safe, ":", color=INK, lw=1.2, label="safe step, any shape")
     limit = UNDAMPED_LIMIT.get(each.integrator)
     axes.set(xscale="log", yscale="log", ylim=(each.steps[0], each.steps[-1]))
-    axes.set(xlabel="damping ratio of the fastest oscillation", ylabel="w_max h")
+    axes.set(xlabel="damping ratio", ylabel="w_max h")
     undamped = f"{limit:.3g} undamped" if limit else "none undamped"
     axes.set_title(f"{WORDS[each.integrator]} ({undamped})", fontsize=10)
     return shaded

@@ -45,7 +45,7 @@ def _rounded(value: float) -> float:
 def table(found: dict[str, dict[str, object]]) -> str:
     """The ranges as a Markdown table.
 
-    k/m: stretch stiffness by mass of a particle, of a square grid with the paper's ratios, whose w_max is 2.78 sqrt(k/m).
+    k/m: stretch stiffness by mass of a particle, of a square grid with the paper's ratios, whose w_max is 2.11 sqrt(k/m).
     """
     from .sheet import Point
 

@@ -25,7 +25,9 @@ use crate::error::{Error, Result};
 use crate::report::FrameRow;
 use crate::{limits, source};
 
-/// Vertices from which on a scene gets all threads: sixteen of the solver's chunks of 2048.
+/// Vertices from which on a scene gets all threads: sixteen of the solver's chunks of 2048. On two cores, sheets of 96² by BDF2
+/// take 1.5 times as long one after the other as one a core, of 160² 1.4 times, of 181² 1.1 times: beyond, two at a time would
+/// only need twice the memory.
 pub const LARGE: usize = 32_768;
 
 /// How often, at the least, the observer is asked whether to go on.

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from array import array
+from typing import Any
+
 import bpy
 
 from .. import native
-from ..core import drift, points, scene_json
+from ..core import drift, points, ranges, scene_json
 from ..core.refusal import Refusal, sentence_of
 from . import certificate, live, mesh_arrays, rest, runtime, settings, simulation
 
@@ -50,9 +53,33 @@ def _compute(obj: bpy.types.Object, description: dict, fps: float) -> str:
     try:
         world = points.transform(rest.positions(obj.data), matrix, "d")
         given = simulation.given(obj, world, matrix)
-        return _words(simulation.maker(description, [given])(), fps)
+        solver = simulation.maker(description, [given])()
+        advice = _advice(description, given, solver, fps)
+        return ". ".join(filter(None, [_words(solver, fps), advice]))
     except native.FAILURES as error:
         return sentence_of(error)
+
+
+def _advice(description: dict[str, Any], given: simulation.Given, solver: Any, fps: float) -> str:
+    """What speaks against the damping of springs, or nothing."""
+    cloth = description["cloth"][0]
+    if cloth["model"] != "springs":
+        return ""
+    _, _, _, stiffness, damping = solver.read_springs(0)
+    numbers = [array("d", values) for values in (stiffness, damping)]
+    bare = {**cloth["springs"], "limiter": "none", "air_damping": 0.0}
+    bare = {key: 0.0 if key.startswith("damping") else bare[key] for key in bare}
+    bare["damping_law"] = cloth["springs"]["damping_law"]
+    undamped = {
+        "scene": description["scene"],
+        "cloth": [{**cloth, "springs": bare}],
+        "solver": {"integrator": "verlet", "allow_unstable": True},
+    }
+    step = simulation.maker(undamped, [given])().safe_time_step
+    if step >= 1.0 / fps:  # so slow that every step of a frame is short
+        return ""
+    integrator = description["solver"]["integrator"]
+    return ranges.advice(integrator, ranges.damping_ratio(*numbers, step))
 
 
 def _taken(obj: bpy.types.Object, scene: bpy.types.Scene) -> str:

@@ -324,6 +324,31 @@ def bake(
         The report, as in report.json.
     """
 
+def run_batch(
+    scenes: Sequence[str],
+    *,
+    folder: str | None = None,
+    threads: int = 0,
+    progress: Callable[[Mapping[str, float | int]], None] | None = None,
+) -> list[dict[str, Any]]:
+    """Run many scenes to their last frames, without files: small ones one a core, large ones one after the other.
+
+    Args:
+        scenes: Each a scene file's keys as a JSON object, `grid` and `mesh` included.
+        folder: Where the files that scenes name are looked for; the working folder if None.
+        threads: 0 takes every core. The rows do not depend on it, but for their seconds.
+        progress: Called after every scene, and ten times a second, with done, total, seconds; an exception it raises (also
+            KeyboardInterrupt) stops the batch within a step.
+
+    Returns:
+        For each scene, in their order: ending ("done", "diverged", "unstable" or "refused"); error (a sentence, or None);
+        safe_time_step (s) at the first frame; largest_strain over all frames; first and last, the certificates of the first
+        and the last good frame, as rows of report.json without seconds; seconds. What a scene did not reach is None.
+
+    Raises:
+        SceneError: The number of threads is not accepted.
+    """
+
 def fabric_presets() -> dict[str, dict[str, Any]]:
     """All fabrics that a scene's `preset` may name.
 

@@ -382,3 +382,32 @@ def test_steps_are_automatic_or_one_of_two_numbers_and_begin_with_what_a_frame_t
         ["auto", 0, 0.0],
         ["time_step", 0, 0.01],
     ]
+
+
+def shown_with_dampings():
+    from cloths import add_cloth
+
+    settings = add_cloth().boucle
+    settings.integrator = "symplectic_euler"
+    shown = []
+    for damping, law in ((0.0, "relative"), (50.0, "relative"), (50.0, "axial")):
+        settings.damping, settings.damping_law = damping, law
+        shown.append(settings.safe_step)
+    settings.integrator = "forward_euler"
+    settings.damping, settings.damping_law = 0.001, "relative"
+    shown.append(settings.safe_step)
+    settings.integrator = "bdf2"
+    settings.damping = 50.0
+    shown.append(settings.safe_step)
+    return shown
+
+
+def test_the_panel_warns_of_damping_that_costs_an_explicit_integrator_its_step(blender):
+    none, much, axial, little, implicit = blender.run(shown_with_dampings)
+    assert none.startswith("Safe time step: ") and "Damping" not in none
+    for text in (much, axial):
+        assert re.search(
+            r"Safe time step: .*\. Damping ratio \S+ of .* above 0\.68 .* lower damping", text
+        )
+    assert "below 0.45" in little and "raise damping" in little
+    assert "Damping" not in implicit

@@ -5,7 +5,7 @@
 //! - `meshes`: meshes of cloths and colliders out of such arrays
 //! - `simulation`: the class `Simulation`; `access`: what is inside it
 //! - `interrupter`: the class `Interrupter`
-//! - `bake`: the function `bake`
+//! - `bake`: the function `bake`; `batch`: the function `run_batch`
 //! - `presets`: the functions `fabric_presets` and `fabric_springs`
 //! - `geometry`: distances, collisions and intersections of many features at once
 //!
@@ -15,6 +15,7 @@
 
 mod access;
 mod bake;
+mod batch;
 mod boundary;
 mod buffers;
 mod faults;
@@ -35,6 +36,7 @@ fn boucle_core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<simulation::Simulation>()?;
     module.add_class::<interrupter::Interrupter>()?;
     module.add_function(wrap_pyfunction!(bake::bake, module)?)?;
+    module.add_function(wrap_pyfunction!(batch::run_batch, module)?)?;
     module.add_function(wrap_pyfunction!(presets::fabric_presets, module)?)?;
     module.add_function(wrap_pyfunction!(presets::fabric_springs, module)?)?;
     module.add_function(wrap_pyfunction!(geometry::point_triangle_distance, module)?)?;

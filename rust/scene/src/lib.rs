@@ -10,6 +10,7 @@
 pub mod assembly;
 mod atomic;
 pub mod bake;
+pub mod batch;
 pub mod checkpoint;
 mod collider;
 pub mod description;

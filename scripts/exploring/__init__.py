@@ -1,0 +1,1 @@
+"""Which steps, stiffnesses, masses and dampings are stable and good: runs, theory, pictures, ranges."""

@@ -258,6 +258,12 @@ class Simulation:
         that keeps its number.
         """
 
+    def vertex_origins(self, cloth: int) -> list[int]:
+        """List, of each vertex that the cloth has now, the vertex that it was: itself, but for those that tearing has added.
+
+        `edge_tension`, `overstretched_edges` and `read_springs` tell of vertices as they are now.
+        """
+
     def torn_edges(self, cloth: int) -> list[tuple[int, int]]:
         """List the edges that are torn, by their vertices as given, in the order in which they tore."""
 

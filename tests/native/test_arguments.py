@@ -195,7 +195,7 @@ def caught(call, *words):
 mesh = (array("f", [0, 0, 0, 1, 0, 0, 0, 0, 1]), array("i", [0]), array("i", [0, 1, 2]))
 scene = json.dumps({"cloth": [{"name": "sheet"}]})
 message = caught(boucle_core._panic_for_tests)
-assert "asked to panic by a test" in message and "simulation.rs:" in message, message
+assert "asked to panic by a test" in message and "faults.rs:" in message, message
 simulation = boucle_core.Simulation(scene, [mesh])
 assert "asked to panic" in caught(boucle_core._panic_for_tests, simulation)
 for call in (simulation.advance, simulation.certificate, simulation.checkpoint):

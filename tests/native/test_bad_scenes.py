@@ -172,8 +172,12 @@ SCENES = [
     ("fabric shear", "[solver]", "[cloth.fabric]\nshear = -100.0\n[solver]", "cloth.flag.fabric.shear (N/m)"),
     ("fabric preset", "[solver]", '[cloth.fabric]\npreset = "demin"\n[solver]', 'cloth.flag.fabric.preset = "demin"'),
     ("fabric warp", "[solver]", "[cloth.fabric]\nwarp = [0, 0, 0]\n[solver]", "cloth.flag.fabric.warp = [0, 0, 0]"),
-    # for later versions
-    ("later tear", "[solver]", "[tear]\nenabled = false\n[solver]", "tear.enabled is not supported yet"),
+    # tearing
+    ("tear force", "[solver]", "[tear]\nforce = -1\n[solver]", "tear.force = -1.0; accepted: 0 to 1e12"),
+    ("tear without a threshold", "[solver]", "[tear]\nenabled = true\n[solver]",
+     "cloth.flag.tear.enabled = true, but nothing says when it tears"),
+    ("tear of no edge", "[solver]", "[cloth.tear]\nenabled = true\nopenings = [{ frame = 2, pairs = [[1, 1]] }]\n[solver]",
+     "vertices 1 and 1 are to part"),
     # water
     ("strength of water", "[solver]", '[[force]]\nkind = "water"\nstrength = 1\n[solver]',
      'force.0.strength is no key of "water"'),

@@ -7,7 +7,7 @@ import boucle_core
 import numpy as np
 import pytest
 
-STORM = Path(__file__).parent.parent / "scenes" / "storm.toml"
+STORM = Path(__file__).parent.parent / "scenes" / "tear" / "storm.toml"
 COLUMNS, ROWS = 6, 9
 ROW = 4
 
@@ -64,6 +64,9 @@ def test_a_row_that_opens_parts_the_sheet():
         if vertex // COLUMNS != ROW:
             assert np.ptp(at[vertices == vertex], axis=0).max() == 0.0
     assert made.vertex_count(0) == ROWS * COLUMNS
+    origins = made.vertex_origins(0)
+    assert origins[: ROWS * COLUMNS] == list(range(ROWS * COLUMNS))
+    assert {origin // COLUMNS for origin in origins[ROWS * COLUMNS :]} == {ROW}
     out = np.empty((ROWS * COLUMNS, 3))
     made.read_positions(0, out)
     assert np.isfinite(out).all()
@@ -102,7 +105,11 @@ def test_the_tension_of_edges_is_the_weight_below_them():
     [
         ({"openings": []}, "nothing says when it tears"),
         ({"strength": [1.0] * 100}, r"cloth\.sheet\.tear\.strength = 100; accepted: at most 54"),
-        ({"openings": [{"frame": 1, "pairs": [[0, 9]]}]}, "vertices 0 and 9 are to part"),
+        ({"openings": [{"frame": 2, "pairs": [[0, 9]]}]}, "vertices 0 and 9 are to part"),
+        (
+            {"openings": [{"frame": 1, "pairs": [[0, 1]]}]},
+            r"openings\.0\.frame = 1; accepted: after",
+        ),
         ({"force": -1.0}, r"cloth\.sheet\.tear\.force = -1\.0; accepted: 0 to 1e12"),
         ({"strength": [2.0]}, "tear strength is 2; accepted: 0 to 1"),
     ],

@@ -87,7 +87,8 @@ impl Simulation {
     }
 
     fn spring_count(&self, py: Python<'_>, cloth: i64) -> PyResult<usize> {
-        Ok(self.cloth(py, cloth)?.1.springs.len())
+        let index = self.cloth(py, cloth)?.0;
+        Ok(self.assembly(py)?.simulation.cloth(index).springs.len())
     }
 
     fn collider_point_count(&self, py: Python<'_>, collider: i64) -> PyResult<usize> {
@@ -306,6 +307,11 @@ impl Simulation {
         let index = self.cloth(py, cloth)?.0;
         let rows = self.with(py, |assembly| Ok(assembly.simulation.corner_positions(index)))?;
         buffers::write_rows(out, &rows)
+    }
+
+    fn vertex_origins(&self, py: Python<'_>, cloth: i64) -> PyResult<Vec<u32>> {
+        let index = self.cloth(py, cloth)?.0;
+        Ok(self.assembly(py)?.simulation.origins(index))
     }
 
     fn torn_edges(&self, py: Python<'_>, cloth: i64) -> PyResult<Vec<(u32, u32)>> {

@@ -234,7 +234,12 @@ fn cloth(
     let pressure = pressure.map(|pressure| pressure.pressure(scene.scene.frames[0]));
     let (pin_material, bulk) = (description.pin_material(), description.water.bulk());
     let vertices = cloth.positions.len();
-    let tear = description.tear.tear(&scene.tear, vertices, &format!("{at}.tear"))?;
+    let tear = description.tear.tear(
+        &scene.tear,
+        scene.scene.frames[0],
+        vertices,
+        &format!("{at}.tear"),
+    )?;
     Ok(Cloth { collision, pin_weights, pin_material, pressure, bulk, tear, ..cloth })
 }
 

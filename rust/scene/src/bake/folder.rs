@@ -3,11 +3,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::torn;
+use super::torn::{self, CORNERS};
 use crate::assembly::Assembly;
 use crate::atomic::{self, Durability};
 use crate::checkpoint::{self, Checkpoint};
-use crate::description::Scene;
+use crate::description::{ClothDescription, Scene};
 use crate::error::{Error, Result};
 use crate::report::Report;
 use crate::{obj, pc2};
@@ -155,6 +155,14 @@ pub(super) fn check_names(scene: &Scene) -> Result<()> {
             && !name.contains(is_bad)
             && !name.starts_with(['.', ' '])
             && !name.ends_with(['.', ' ']);
+        let has_corners_of = |other: &ClothDescription| {
+            name.to_lowercase() == format!("{}{CORNERS}", other.name.to_lowercase())
+        };
+        if let Some(other) = scene.cloth.iter().find(|other| has_corners_of(other)) {
+            let accepted = format!("a name other than that of a file of cloth \"{}\"", other.name);
+            let key = format!("cloth.{index}.name");
+            return Err(Error::refuse(&key, format!("{name:?}"), &accepted));
+        }
         if !fits {
             let accepted = "a file name of at most 100 bytes without / \\ : * ? \" < > |, and \
                             without a dot or space at either end";

@@ -15,9 +15,12 @@ use crate::atomic::{self, Durability};
 use crate::error::{Error, Result};
 use crate::{obj, pc2};
 
+/// What stands between the name of a cloth and that of its cache of corners.
+pub(super) const CORNERS: &str = ".corners";
+
 /// The cache of a cloth's corners in a folder.
 pub(super) fn corners_path(folder: &Path, name: &str) -> PathBuf {
-    folder.join(format!("{name}.corners.pc2"))
+    folder.join(format!("{name}{CORNERS}.pc2"))
 }
 
 /// Whether a cloth tears.

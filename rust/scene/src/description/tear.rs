@@ -89,8 +89,15 @@ impl ClothTear {
     /// As the solver takes it, for a cloth of so many vertices; nothing if it is not to tear.
     ///
     /// # Errors
-    /// [`Error::Input`] when it is to tear and nothing says when, or there are more strengths than vertices.
-    pub fn tear(&self, scene: &TearDescription, vertices: usize, at: &str) -> Result<Option<Tear>> {
+    /// [`Error::Input`] when it is to tear and nothing says when, there are more strengths than vertices, or something is to open
+    /// before anything moves.
+    pub fn tear(
+        &self,
+        scene: &TearDescription,
+        first_frame: i32,
+        vertices: usize,
+        at: &str,
+    ) -> Result<Option<Tear>> {
         if !self.enabled.or(scene.enabled).unwrap_or(false) {
             return Ok(None);
         }
@@ -101,6 +108,13 @@ impl ClothTear {
         let mut strength = self.strength.clone();
         if !strength.is_empty() {
             strength.resize(vertices, 1.0);
+        }
+        for (index, opening) in self.openings.iter().enumerate() {
+            if opening.frame <= first_frame {
+                let key = format!("{at}.openings.{index}.frame");
+                let accepted = format!("after the scene's first frame, {first_frame}");
+                return Err(Error::refuse(&key, opening.frame, &accepted));
+            }
         }
         let opening =
             |own: &OpeningDescription| Opening { frame: own.frame, pairs: own.pairs.clone() };

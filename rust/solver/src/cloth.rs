@@ -1,4 +1,4 @@
-//! One cloth as it is given: mesh, rest shape, springs, masses, pins. It never changes.
+//! One cloth as it is given: mesh, rest shape, springs, masses, pins. It never changes, but is another once it is torn.
 
 use boucle_geometry::{Mesh, Vector};
 

@@ -16,7 +16,8 @@
 //!
 //! Nothing depends on the mesh, as the bounds are those of the curvature and not of hinges that happen to lie across a fold. No
 //! energy is gained: at the K of each face it becomes less, by `(2 s - s²)` of the energy of an element that is moved by the part
-//! s of its way, and settling anew lessens it further; what a polynomial in place of the inverse errs by is less than that.
+//! s of its way, and settling anew lessens it further; what a polynomial in place of the inverse errs by is less than that. Beside a
+//! face that is bent far more, the part of [`super::variation`] may gain a little: moments tell each face without it.
 //!
 //! Curvature is that beyond the rest shape: where the rest shape changes, creases and anchors go with it.
 //!

@@ -15,10 +15,11 @@ import boucle_core
 import numpy as np
 from matplotlib.figure import Figure
 
+from integrator_words import WORDS
 from paper.looks import page
 
 from .sheet import PAPER, Point, grid, scene_text
-from .stability_picture import COLORS, WORDS
+from .stability_picture import COLORS
 from .theory import EXPLICIT, eigenvalues, largest_step
 
 VERTICES = 10

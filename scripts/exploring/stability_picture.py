@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, LogNorm
 from matplotlib.figure import Figure
 
+from integrator_words import WORDS
 from paper.looks import INK, page
 
 from .boundary import GROWN
@@ -23,16 +24,6 @@ COLORS = {
     "rk4": "#D55E00",
     "implicit_euler": "#E69F00",
     "bdf2": "#222222",
-}
-WORDS = {
-    "forward_euler": "forward Euler",
-    "symplectic_euler": "symplectic Euler",
-    "verlet": "Verlet",
-    "leapfrog": "leapfrog",
-    "midpoint": "midpoint",
-    "rk4": "Runge-Kutta 4",
-    "implicit_euler": "implicit Euler",
-    "bdf2": "BDF2",
 }
 MARKS = {"symplectic_euler": "o", "verlet": "+", "leapfrog": "x", "rk4": "D"}
 GROWTH_MAP = LinearSegmentedColormap.from_list("growth", ["#a9cfe8", "#f6f3ec", "#f0b583"])

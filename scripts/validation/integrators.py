@@ -10,21 +10,13 @@ from typing import Any
 import boucle_core
 import numpy as np
 
+from integrator_words import WORDS
+
 from . import reference
 from .row import Curve, Finding, Row, Tolerance
 from .specimen import STILL, Setting, Specimen, grid
 
 CHAPTER = "integrators"
-WORDS = {
-    "forward_euler": "forward Euler",
-    "symplectic_euler": "symplectic Euler",
-    "verlet": "Verlet",
-    "leapfrog": "leapfrog",
-    "midpoint": "midpoint",
-    "rk4": "Runge-Kutta 4",
-    "implicit_euler": "implicit Euler",
-    "bdf2": "BDF2",
-}
 NAMES_IN_TABLE = {
     "verlet": "velocity_verlet",
     "leapfrog": "velocity_verlet",

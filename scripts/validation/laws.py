@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from .integrators import WORDS
+from integrator_words import WORDS
+
 from .row import Finding, Row, Tolerance
 from .specimen import STILL, Setting, Shape, Specimen, even_grid
 

@@ -71,13 +71,13 @@ def bake_command(*words):
 
 
 @pytest.fixture
-def start_bake(tmp_path):
-    """Start bake.py in a folder of its own and return the process."""
+def start_command(tmp_path):
+    """Start a command in a folder of its own and return the process."""
     processes = []
 
-    def start(*words, **options):
+    def start(command, **options):
         process = subprocess.Popen(
-            bake_command(*words),
+            command,
             cwd=tmp_path,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -92,6 +92,12 @@ def start_bake(tmp_path):
         if process.poll() is None:
             process.kill()
         process.communicate()
+
+
+@pytest.fixture
+def start_bake(start_command):
+    """Start bake.py in a folder of its own and return the process."""
+    return lambda *words, **options: start_command(bake_command(*words), **options)
 
 
 @pytest.fixture

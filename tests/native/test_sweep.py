@@ -47,25 +47,9 @@ def run_sweep(tmp_path):
 
 
 @pytest.fixture
-def start_sweep(tmp_path):
+def start_sweep(start_command):
     """Start sweep.py and return the process."""
-    processes = []
-
-    def start(*words):
-        process = subprocess.Popen(
-            sweep_command(*words),
-            cwd=tmp_path,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        processes.append(process)
-        return process
-
-    yield start
-    for process in processes:
-        process.kill()
-        process.communicate()
+    return lambda *words: start_command(sweep_command(*words))
 
 
 @pytest.fixture

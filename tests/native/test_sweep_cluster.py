@@ -78,27 +78,15 @@ def cluster(tmp_path):
 
 
 @pytest.fixture
-def start_sweep(tmp_path, small_scene):
+def start_sweep(start_command, small_scene):
     """Start sweep.py on some runs of the small scene and return the process."""
-    processes = []
 
     def start(*words, samples=64, frames=60):
         path = small_scene.with_name("runs.toml")
         path.write_text(RUNS.format(samples=samples, frames=frames))
-        process = subprocess.Popen(
-            [sys.executable, str(SWEEP), str(path), *map(str, words)],
-            cwd=tmp_path,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
-        processes.append(process)
-        return process
+        return start_command([sys.executable, str(SWEEP), str(path), *map(str, words)])
 
-    yield start
-    for process in processes:
-        process.kill()
-        process.communicate()
+    return start
 
 
 def wait_for(condition, seconds=60):

@@ -79,8 +79,9 @@ impl Folder {
     /// Leaves cloth that tears as caches of the vertices that it has by now.
     pub(super) fn gather_torn(&self, assembly: &Assembly) -> Result<()> {
         let simulation = &assembly.simulation;
-        let torn = (0..simulation.cloth_count()).filter(|&index| torn::tears(simulation, index));
-        torn.into_iter().try_for_each(|index| torn::gather(&self.path, simulation, index))
+        let mut torn =
+            (0..simulation.cloth_count()).filter(|&index| torn::tears(simulation, index));
+        torn.try_for_each(|index| torn::gather(&self.path, simulation, index))
     }
 
     /// Takes up the caches after their first samples.

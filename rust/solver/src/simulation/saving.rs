@@ -47,12 +47,13 @@ impl Simulation {
             ));
         }
         let damaged = || Error::BadCheckpoint("is damaged; accepted: a whole one");
-        let (before, undo) = (self.tears(), self.saved());
+        let before = self.tears();
+        let undo = (before != checkpoint.tears).then(|| self.saved());
         if self.tear_alike(&checkpoint.tears).is_none() {
             return Err(damaged());
         }
         let taken = self.take_if_whole(checkpoint, damaged());
-        if taken.is_err() {
+        if let (Err(_), Some(undo)) = (&taken, undo) {
             // What was is whole.
             let _ = self.tear_alike(&before);
             let _ = self.take_if_whole(undo, damaged());

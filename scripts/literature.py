@@ -70,6 +70,17 @@ def strained(
     studio.render(shot, exhibit.view, width, path)
 
 
+def told(system: System, row: dict[str, Any], first: dict[str, Any]) -> str:
+    """What the title of a panel gives of its frame."""
+    if system.tells == "strain":
+        return f": {100.0 * row['max_strain']:.0f} %"
+    if system.tells == "energy":
+        now, then = (each["kinetic_energy"] + each["potential_energy"] for each in (row, first))
+        won = round(now - then, 2)
+        return f": {won:+.2f} J" if won else ": 0.00 J"
+    return ""
+
+
 def panel(studio: Any, system: System, exhibit: Exhibit, folder: Path) -> tuple[Any, str]:
     """The rendered panel of one run and its title."""
     from PIL import Image
@@ -81,9 +92,8 @@ def panel(studio: Any, system: System, exhibit: Exhibit, folder: Path) -> tuple[
         picture(studio, exhibit, folder, shot)
     else:
         strained(studio, exhibit, system.largest, folder, PANEL, shot)
-    strain = 100.0 * row["max_strain"]
-    title = f"{exhibit.words}: {strain:.0f} %" if system.tells_strain else exhibit.words
-    print(f"{system.name}, {exhibit.words}: frame {row['frame']}, strain {strain:.1f} %", flush=True)
+    title = exhibit.words + told(system, row, report["frames"][0])
+    print(f"{system.name}, frame {row['frame']}, {title}", flush=True)
     with Image.open(shot) as image:
         height = round(image.height * PANEL / image.width)
         return image.convert("RGBA").resize((PANEL, height), Image.Resampling.LANCZOS), title

@@ -140,7 +140,9 @@ def test_dynamic_stiffness_follows_the_load_and_goes_back_with_it():
         expected = own * np.where(ratio > 1.0 + ALLOWED, ratio, 1.0)
         assert stiffness == pytest.approx(expected, rel=1e-9)
     highest = max((stiffness / own).max() for _, _, stiffness in dynamic)
-    assert 1.2 < highest < 1.3, "no constant grows without end"
+    assert 1.2 < highest < 1.3, (
+        "each step begins from the spring's own constant, so none grows from step to step"
+    )
     assert (dynamic[-1][2] == own).all()
 
 

@@ -9,6 +9,7 @@ use pyo3::types::PyBytes;
 
 use crate::boundary::{compute, parse_json, raise, refuse};
 use crate::buffers;
+use crate::corner_numbers;
 use crate::interrupter::Interrupter;
 use crate::meshes::{self, MeshArrays};
 use crate::springs;
@@ -307,6 +308,22 @@ impl Simulation {
         let index = self.cloth(py, cloth)?.0;
         let rows = self.with(py, |assembly| Ok(assembly.simulation.corner_positions(index)))?;
         buffers::write_rows(out, &rows)
+    }
+
+    fn read_corner_numbers(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        quantity: &str,
+        out: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let index = self.cloth(py, cloth)?.0;
+        let Some(of) = corner_numbers::reader(quantity) else {
+            let accepted = corner_numbers::NAMES.join(", ");
+            return Err(refuse(py, format!("quantity = {quantity:?}; accepted: {accepted}")));
+        };
+        let numbers = self.with(py, |assembly| Ok(of(&assembly.simulation, index)))?;
+        buffers::write_numbers(out, &numbers, "float32")
     }
 
     fn vertex_origins(&self, py: Python<'_>, cloth: i64) -> PyResult<Vec<u32>> {

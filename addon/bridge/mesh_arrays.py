@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import bpy
@@ -48,6 +50,12 @@ def topology(mesh: bpy.types.Mesh) -> Topology:
     mesh.polygons.foreach_get("loop_start", starts)
     mesh.loops.foreach_get("vertex_index", corners)
     return Topology(starts, corners)
+
+
+def face_corners(mesh: bpy.types.Mesh) -> Iterator[tuple[int, int]]:
+    """First corner and number of corners of each face."""
+    starts = [*topology(mesh).starts, len(mesh.loops)]
+    return ((int(one), int(other - one)) for one, other in pairwise(starts))
 
 
 def edges(mesh: bpy.types.Mesh) -> Points:

@@ -1,8 +1,8 @@
 """The slot: the modifiers that stand where the simulation belongs in a cloth's stack.
 
-First the node group that stores positions as `boucle_target`, then the Mesh Cache that plays a result; of a torn cloth, around the
-Mesh Cache a node group that splits edges and a Weld. What is above (armature, hooks, lattices) moves the pins and the rest shape;
-what is below (subdivision, thickness) works on the simulated cloth.
+First the node group that stores positions as `boucle_target`, then the Mesh Cache that plays a result; of a torn cloth, around
+it, a node group that splits edges and a Weld. What is above (armature, hooks, lattices) moves the pins and the rest shape; what
+is below (subdivision, thickness) works on the simulated cloth.
 """
 
 from __future__ import annotations

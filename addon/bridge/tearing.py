@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import bmesh
 import bpy
 
-from .._identifiers import MEND_MODIFIER, TEAR_ATTRIBUTE, TEAR_MODIFIER
+from .._identifiers import TEAR_ATTRIBUTE, TEAR_MODIFIER
 from ..core import points
 from ..core.points import Points
 from ..core.refusal import Refusal
@@ -158,13 +158,16 @@ def _unmark(mesh: bpy.types.Mesh) -> None:
 
 
 def sides(mesh: bpy.types.Mesh, shown: Layout) -> Points:
-    """The two points of each edge, int32, flat: those of one of the faces beside it; of a loose edge, its vertices."""
-    out = mesh_arrays.edges(mesh)
-    edge_of = points.empty("i", len(mesh.loops))
-    mesh.loops.foreach_get("edge_index", edge_of)
-    for first, count in mesh_arrays.face_corners(mesh):
-        for corner in range(first, first + count):
-            after = first + (corner - first + 1) % count
-            edge = int(edge_of[corner])
-            out[2 * edge], out[2 * edge + 1] = shown.points[corner], shown.points[after]
+    """The two points of each side of each face, from its corners in turn, int32, flat."""
+    ends = zip(range(len(mesh.loops)), mesh_arrays.next_corners(mesh), strict=True)
+    return array("i", (shown.points[corner] for side in ends for corner in side))
+
+
+def edge_points(mesh: bpy.types.Mesh, shown: Layout) -> Points:
+    """The two points of each edge, int32, flat: those of a face beside it; of a loose edge, its vertices."""
+    out, of_sides = mesh_arrays.edges(mesh), sides(mesh, shown)
+    edges = points.empty("i", len(mesh.loops))
+    mesh.loops.foreach_get("edge_index", edges)
+    for corner, edge in enumerate(edges):
+        out[2 * edge : 2 * edge + 2] = of_sides[2 * corner : 2 * corner + 2]
     return out

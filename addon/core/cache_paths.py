@@ -46,7 +46,16 @@ def _with_middle(path: str, word: str) -> str:
 def files_of(pc2: str) -> CacheFiles:
     """The files that belong to a PC2 file."""
     stem = os.path.splitext(pc2)[0]
-    endings = ("json", "checkpoint", "strain", "tension", "contact", "intersection", "force", "tear")
+    endings = (
+        "json",
+        "checkpoint",
+        "strain",
+        "tension",
+        "contact",
+        "intersection",
+        "force",
+        "tear",
+    )
     return CacheFiles(pc2, *(f"{stem}.{ending}" for ending in endings))
 
 

@@ -116,6 +116,17 @@ def scatter(flat: Points, numbers: Points, count: int) -> Points:
     return out
 
 
+def joined(one: Points, other: Points) -> Points:
+    """Two buffers of float32 as one."""
+    numpy = numpy_module()
+    return array("f", one) + array("f", other) if numpy is None else numpy.concatenate((one, other))
+
+
+def pairs(count: int) -> Points:
+    """The pairs of each of so many points and the one that stands so many places after it, int32, flat."""
+    return array("i", (number + part for number in range(count) for part in (0, count)))
+
+
 def integers(data: bytes) -> Points:
     """int32 of bytes, a buffer of its own."""
     numpy = numpy_module()

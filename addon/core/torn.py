@@ -1,11 +1,11 @@
 """How the points of a cache belong to a torn cloth, in a file `NAME.tear` beside `NAME.pc2`.
 
-While a cloth is baked it is not known where it will tear: the cache holds a point for each corner of each face, as Blender's Split
-Edges makes them of all edges. At the end the same file holds the points of a mesh that is split along the torn edges alone. Which
-corner is at which point is asked of Blender, and kept here: in whatever order it splits, nothing is guessed.
+While a cloth is baked it is not known where it will tear: the cache holds a point for each corner of each face, as Blender's
+Split Edges makes them of all edges. At the end the same file holds the points of a mesh that is split along torn edges alone.
+Which corner is at which point is asked of Blender, and kept here: in whatever order it splits, nothing is guessed.
 
-Layout, little-endian: a magic line, one line of JSON (the counts), then int32 of the point of each corner, and int32 of both ends of
-each edge that is split.
+Layout, little-endian: a magic line, one line of JSON (the counts), then int32 of the point of each corner, and int32 of both
+ends of each edge that is split.
 """
 
 from __future__ import annotations
@@ -123,7 +123,9 @@ def arrange(pc2_path: str, tear_path: str, old: Layout, new: Layout) -> bool:
         for index in range(header.sample_count):
             corners = old.spread(pc2.read_sample(pc2_path, index))
             gathered = new.gather(corners)
-            if bytes(memoryview(new.spread(gathered)).cast("B")) != bytes(memoryview(corners).cast("B")):
+            if bytes(memoryview(new.spread(gathered)).cast("B")) != bytes(
+                memoryview(corners).cast("B")
+            ):
                 return False
             writer.append(gathered)
         writer.close()

@@ -34,8 +34,7 @@ class BOUCLE_PT_tearing(PhysicsPanel, Panel):
         if settings.tear_noise > 0.0:
             column.prop(settings, "tear_seed", text="Seed")
         column.prop_search(settings, "tear_strength_group", obj, "vertex_groups")
-        if settings.use_sewing_springs:
-            column.prop(settings, "seam_force", text="Seam Force (N)")
+        column.prop(settings, "seam_force", text="Seams (N)")
         column.separator()
         column.prop_search(settings, "tear_opening_group", obj, "vertex_groups")
         if settings.tear_opening_group:

@@ -30,8 +30,8 @@ class TearProperties:
     )  # fmt: skip
     tear_strain: FloatProperty(
         name="Strain",
-        description="Strain of an edge beyond which it breaks (L/L0 - 1); 0 for never. Below Deformation Rate, or with the "
-        "limiter None: no edge is ever strained further than that allows",
+        description="Strain beyond which an edge breaks (L/L0 - 1); 0 for never. A limiter keeps edges within the Deformation "
+        "Rate: choose less than that, or the limiter None",
         default=0.0, min=0.0, max=1e6, soft_max=2.0, precision=3, step=1,
         options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip

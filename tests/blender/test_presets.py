@@ -164,7 +164,7 @@ def test_a_fabric_sets_both_models_and_the_thickness_that_nobody_chose(blender):
     denim = presets["denim"]
     told, springs = result["denim"], result["springs"]
     shared = set(denim) & set(told) - {"thickness"}
-    assert len(shared) == 11 and all(told[name] == denim[name] for name in shared)
+    assert len(shared) == 12 and all(told[name] == denim[name] for name in shared)
     assert told["use_compression"], "yarns buckle"
     assert told["thickness"] == 0.5 * denim["thickness"]
     for name in ("stretch", "bend", "damping_stretch", "damping_bend"):

@@ -1,16 +1,16 @@
 //! Numbers at the corners of faces, where each side of a tear has its own.
 
 use boucle_solver::Simulation;
+use pyo3::prelude::*;
 
-/// What is told.
-pub(crate) const NAMES: [&str; 5] = ["strain", "tension", "contact", "intersection", "force"];
+use crate::boundary::refuse;
 
 /// Gives a number for each corner of a cloth's faces.
 pub(crate) type Reader = fn(&Simulation, usize) -> Vec<f32>;
 
-/// What tells a quantity at the corners; none if there is no such quantity.
-pub(crate) fn reader(quantity: &str) -> Option<Reader> {
-    Some(match quantity {
+/// What tells a quantity at the corners.
+pub(crate) fn reader(py: Python<'_>, quantity: &str) -> PyResult<Reader> {
+    Ok(match quantity {
         "strain" => |simulation, cloth| spread(simulation, cloth, Simulation::vertex_strain),
         "tension" => |simulation, cloth| spread(simulation, cloth, Simulation::vertex_tension),
         "contact" => |simulation, cloth| spread(simulation, cloth, Simulation::vertex_contacts),
@@ -18,7 +18,10 @@ pub(crate) fn reader(quantity: &str) -> Option<Reader> {
             |simulation, cloth| spread(simulation, cloth, Simulation::vertex_intersections)
         }
         "force" => Simulation::corner_tension,
-        _ => return None,
+        _ => {
+            let accepted = "strain, tension, contact, intersection, force";
+            return Err(refuse(py, format!("quantity = {quantity:?}; accepted: {accepted}")));
+        }
     })
 }
 

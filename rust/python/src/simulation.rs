@@ -7,7 +7,7 @@ use boucle_scene::{Assembly, Scene};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::boundary::{compute, parse_json, raise, refuse};
+use crate::boundary::{compute, parse_json, thread_count};
 use crate::buffers;
 use crate::corner_numbers;
 use crate::interrupter::Interrupter;
@@ -317,11 +317,7 @@ impl Simulation {
         quantity: &str,
         out: &Bound<'_, PyAny>,
     ) -> PyResult<()> {
-        let index = self.cloth(py, cloth)?.0;
-        let Some(of) = corner_numbers::reader(quantity) else {
-            let accepted = corner_numbers::NAMES.join(", ");
-            return Err(refuse(py, format!("quantity = {quantity:?}; accepted: {accepted}")));
-        };
+        let (index, of) = (self.cloth(py, cloth)?.0, corner_numbers::reader(py, quantity)?);
         let numbers = self.with(py, |assembly| Ok(of(&assembly.simulation, index)))?;
         buffers::write_numbers(out, &numbers, "float32")
     }
@@ -333,8 +329,7 @@ impl Simulation {
 
     fn torn_edges(&self, py: Python<'_>, cloth: i64) -> PyResult<Vec<(u32, u32)>> {
         let index = self.cloth(py, cloth)?.0;
-        let torn = self.assembly(py)?.simulation.torn_edges(index);
-        Ok(torn.into_iter().map(|[a, b]| (a, b)).collect())
+        Ok(self.assembly(py)?.simulation.torn_edges(index).into_iter().map(Into::into).collect())
     }
 
     fn edge_tension(&mut self, py: Python<'_>, cloth: i64) -> PyResult<Vec<(u32, u32, f64)>> {
@@ -401,12 +396,4 @@ impl Simulation {
     fn restore(&mut self, py: Python<'_>, checkpoint: &[u8]) -> PyResult<()> {
         self.with(py, |assembly| Ok(assembly.simulation.restore(checkpoint)?))
     }
-}
-
-/// The number of threads that Python gave.
-pub(crate) fn thread_count(py: Python<'_>, threads: i64) -> PyResult<usize> {
-    let refused = || refuse(py, format!("threads = {threads}; accepted: 1 to 1024, or 0"));
-    let count = usize::try_from(threads).map_err(|_| refused())?;
-    boucle_scene::limits::threads(count).map_err(|error| raise(py, &error))?;
-    Ok(count)
 }

@@ -111,11 +111,15 @@ def check(pc2_path: str, tear_path: str, vertices: int, corners: int) -> str:
 
 
 def arrange(pc2_path: str, tear_path: str, old: Layout, new: Layout) -> bool:
-    """Write a cache's points in another layout; False, and nothing is changed, if that would join what is apart.
+    """Write a cache's points in another layout; False, and nothing changes, if that would join what is apart or gain nothing.
+
+    By the number of points the two can be told from each other.
 
     Raises:
         CacheRefusal: A file cannot be read or written.
     """
+    if new.point_count == old.point_count:
+        return False
     header = pc2.read_header(pc2_path)
     part = f"{pc2_path}.part"
     writer = pc2.Writer.create(part, new.point_count, int(header.first_frame))

@@ -1,7 +1,16 @@
 """The panels as a tree: Blender's words, in Blender's order, closed where Blender's own cloth is."""
 
 ORDER = {
-    "BOUCLE_PT_cloth": ["Springs", "Fabric", "Shape", "Collisions", "Tearing", "Forces", "Solver", "Cache"],
+    "BOUCLE_PT_cloth": [
+        "Springs",
+        "Fabric",
+        "Shape",
+        "Collisions",
+        "Tearing",
+        "Forces",
+        "Solver",
+        "Cache",
+    ],
     "BOUCLE_PT_springs": ["Stiffness (N/m)", "Damping (N·s/m)", "Deformation"],
     "BOUCLE_PT_fabric": ["Stiffness (N/m)", "Bending (µN·m)", "Damping", "Deformation"],
     "BOUCLE_PT_collisions": ["Object Collisions", "Self Collisions"],

@@ -123,7 +123,7 @@ fn a_sheet_tears_at_the_same_stress_at_any_resolution() {
         let below = density * (height - 0.5 * spacing);
         let springs = membrane(StiffnessFrom::Springs);
         let membrane = hung(membrane(StiffnessFrom::Continuum));
-        let of_fabric = hung(springs).of_fabric(fabric.clone()).expect("a fabric");
+        let of_fabric = hung(springs.clone()).of_fabric(fabric.clone()).expect("a fabric");
         for (name, cloth) in
             [("membrane", membrane), ("springs", hung(springs)), ("fabric", of_fabric)]
         {

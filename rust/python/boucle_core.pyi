@@ -264,8 +264,8 @@ class Simulation:
         Args:
             cloth: Its number.
             quantity: "strain", "tension", "contact" or "intersection": what `read_strain`, `read_tension`, `read_contacts` or
-                `read_intersections` tell of a vertex, for the vertex that the corner is at now. Or "force": the tension (N) of the
-                edge from this corner to the next of its face, as `edge_tension` has it.
+                `read_intersections` tell of a vertex, for the vertex that the corner is at now. Or "force": the tension (N) of
+                the edge from this corner to the next of its face, as `edge_tension` has it.
             out: Each side of a tear has its own number.
 
         Raises:

@@ -511,3 +511,20 @@ def test_torn_cloths_are_baked_with_others_settle_whole_and_are_exported_torn(bl
         assert (before, after) == (63, longer), kind
         assert abs(low - found["low"]) < 2e-3, kind
     assert found["record"].startswith("Baked: frames 1 to 14")
+
+
+def bake_in_large_numbers(folder):
+    """The same cloth in an object space of centimetres, far from its origin: float32 has no micrometres there."""
+    import bpy
+    from mathutils import Matrix
+
+    obj = add_torn_cloth(end=8)
+    obj.data.transform(Matrix.Translation((3000.0, 0.0, 0.0)) @ Matrix.Scale(100.0, 4))
+    obj.scale = (0.01, 0.01, 0.01)
+    bpy.ops.wm.save_as_mainfile(filepath=os.path.join(folder, "a.blend"))
+    bpy.ops.boucle.bake()
+    return [len(look["positions"]) // 3 for look in at_frames(obj, (1, 4, 8))]
+
+
+def test_what_holds_is_whole_where_coordinates_are_large(new_blender):
+    assert new_blender.run(bake_in_large_numbers, folder=new_blender.folder) == [63, 63, 72]

@@ -103,13 +103,15 @@ fn a_sheet_tears_at_the_same_stress_at_any_resolution() {
         warp: Warp::Along(Vector::z()),
         ..Fabric::default()
     };
-    let membrane = |from| SpringMaterial {
-        air_damping: 0.02,
-        stiffness_from: from,
-        ..material([4000.0, 0.0, 0.0])
-    };
-    for cells in [4, 8, 16] {
+    for cells in [3, 6, 12] {
         let spacing = width / f64::from(cells);
+        // About half of the critical damping of a vertex that swings as the sheet does, at 29 Hz: a load that grows frame by
+        // frame, at 24 Hz, would make it ring.
+        let membrane = |from| SpringMaterial {
+            air_damping: 100.0 * spacing * spacing,
+            stiffness_from: from,
+            ..material([4000.0, 0.0, 0.0])
+        };
         let counts = [cells + 1, 2 * cells + 1];
         let top: Vec<u32> = (counts[0] * (counts[1] - 1)..counts[0] * counts[1]).collect();
         let tear = Tear { stress: Some(stress), ..Tear::default() };
@@ -127,8 +129,9 @@ fn a_sheet_tears_at_the_same_stress_at_any_resolution() {
         for (name, cloth) in
             [("membrane", membrane), ("springs", hung(springs)), ("fabric", of_fabric)]
         {
-            let mut simulation =
-                in_wind(cloth, Vec::new(), settings(IntegratorKind::ImplicitEuler));
+            // At its default tolerance, steps of fabric leave up to a tenth of the strain beside the pins.
+            let exact = Settings { tolerance: 1e-6, ..settings(IntegratorKind::ImplicitEuler) };
+            let mut simulation = in_wind(cloth, Vec::new(), exact);
             let g = load_until_torn(&mut simulation, 0.5);
             let expected = stress / below;
             println!("{name} of {cells} cells: {g} m/s2 beside {expected}");

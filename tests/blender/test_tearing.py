@@ -528,3 +528,56 @@ def bake_in_large_numbers(folder):
 
 def test_what_holds_is_whole_where_coordinates_are_large(new_blender):
     assert new_blender.run(bake_in_large_numbers, folder=new_blender.folder) == [63, 63, 72]
+
+
+def override_and_undo(folder):
+    import bpy
+    from cloths import addon
+
+    obj = add_torn_cloth()
+    obj.name = "Costume"
+    library, shot = (os.path.join(folder, f"{name}.blend") for name in ("library", "shot"))
+    bpy.ops.wm.save_as_mainfile(filepath=library)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=False)
+    with bpy.data.libraries.load(library, link=True) as (_, to):
+        to.objects = ["Costume"]
+    bpy.context.scene.collection.objects.link(to.objects[0])
+    own = to.objects[0].override_create(remap_local_usages=True)
+    own.override_library.is_system_override = False
+    bpy.context.view_layer.objects.active = own
+    bpy.ops.wm.save_as_mainfile(filepath=shot)
+    done = bpy.ops.boucle.bake()
+    torn = at_frames(own)
+    bpy.ops.wm.save_mainfile()
+    bpy.ops.wm.open_mainfile(filepath=shot)
+    own = next(one for one in bpy.data.objects if one.library is None and one.name == "Costume")
+    out = {
+        "done": list(done), "again": at_frames(own) == torn,
+        "counts": [len(look["positions"]) // 3 for look in torn],
+        "stack": [modifier.name for modifier in own.modifiers],
+    }  # fmt: skip
+    bpy.ops.wm.open_mainfile(filepath=library)
+    obj = bpy.context.view_layer.objects.active = bpy.data.objects["Costume"]
+    bpy.ops.ed.undo_push(message="begin")
+    bpy.ops.boucle.bake()
+    bpy.ops.ed.undo_push(message="torn")
+    first = at_frames(obj)
+    obj.vertex_groups["open"].add([4, 13, 22, 31], 1.0, "REPLACE")
+    bpy.ops.ed.undo_push(message="group")
+    bpy.ops.boucle.bake()
+    other = at_frames(obj)
+    bpy.ops.ed.undo_push(message="torn otherwise")
+    bpy.ops.ed.undo()
+    obj = bpy.data.objects["Costume"]
+    out["differ"] = other != first
+    out["undone"] = at_frames(obj) == other, "the files are those of the later bake"
+    out["trouble"] = addon("bridge.cache").problem(obj)
+    return out
+
+
+def test_overrides_tear_and_undo_plays_what_is_on_the_disk(blender):
+    found = blender.run(override_and_undo, folder=blender.folder)
+    assert found["done"] == ["FINISHED"]
+    assert found["counts"] == [63, 72, 72, 72] and found["again"]
+    assert found["stack"] == ["Boucle Target", "Boucle Tear", "Boucle Cache", "Boucle Mend"]
+    assert found["differ"] and found["undone"][0] and found["trouble"] == ""

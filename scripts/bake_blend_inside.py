@@ -192,7 +192,7 @@ class Baker:
                 step.run()  # the solver is built, no frame is simulated yet
                 continue
             if not has_rest:
-                self.write_rest(bake.names)
+                self.write_rest(bake)
                 has_rest = True
             step.run()
             first = bake.stores.plan.first
@@ -202,8 +202,8 @@ class Baker:
                 self.write_report()
             if self.is_stopped():
                 return
-        if not has_rest:  # there was no frame to simulate
-            self.write_rest(bake.names)
+        if self.out:  # of a torn cloth, with the vertices that it has in the end
+            self.write_rest(bake)
 
     def options(self, cloths: Sequence[Any]) -> Any:
         """How to bake cloths that start at the same frame."""
@@ -226,13 +226,21 @@ class Baker:
         self.tell({"kind": "complaint", "text": addon("bridge.bake").outcome(bake, error)})
         return code
 
-    def write_rest(self, names: Sequence[str]) -> None:
-        """The rest meshes as OBJ, in object space as the PC2."""
+    def write_rest(self, bake: Any) -> None:
+        """The rest meshes as OBJ, in object space as the PC2, whose points they have for vertices."""
         import bpy
 
-        for cloth in (bpy.data.objects[name] for name in names):
+        torn = addon("core.torn")
+        for name, store in zip(bake.names, bake.stores.each, strict=True):
+            cloth = bpy.data.objects[name]
             positions = addon("bridge.rest").positions(cloth.data)
             faces = [list(face.vertices) for face in cloth.data.polygons]
+            layout = store.plan.layout and (torn.read(store.files.tear) or store.plan.layout)
+            if layout is not None:
+                corners = [vertex for face in faces for vertex in face]
+                positions = torn.of_vertices(positions, layout, corners)
+                points = iter(layout.points)
+                faces = [[int(next(points)) for _ in face] for face in faces]
             path = os.path.join(self.out, f"{file_name(cloth.name)}.obj")
             addon("core.obj_file").write(path, cloth.name, positions, faces)
 

@@ -73,7 +73,7 @@ def legend_of(obj: bpy.types.Object) -> str:
     import importlib
 
     view = importlib.import_module("bl_ext.user_default.boucle.bridge.overlay_view")
-    batch, legend = view._shown[obj.session_uid]
+    batch, _, legend = view._shown[obj.session_uid]
     assert batch is not None, legend.title
     return f"{legend.title} {legend.ticks[0].text} to {legend.ticks[-1].text}"
 

@@ -91,6 +91,11 @@ def _shown(obj: bpy.types.Object, scene: bpy.types.Scene) -> Points:
     found = shown.at_frame(obj, scene.frame_current)
     if found is None:
         raise Refusal(f'"{obj.name}" has no result to apply: play or bake it first')
+    if shown.is_torn(obj, scene.frame_current):
+        raise Refusal(
+            f'"{obj.name}" is torn at frame {scene.frame_current}, and its mesh has no vertices for the pieces: '
+            "choose an earlier frame, or apply the modifiers of Boucle to a copy"
+        )
     return array("f", found)
 
 

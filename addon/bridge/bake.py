@@ -7,13 +7,14 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import bpy
 
 from .. import native
 from ..core import bake as core_bake
-from ..core import drift, joint, points, progress, report, scene_json
+from ..core import drift, joint, points, progress, report, scene_json, torn
 from ..core.bake import Moment, Step
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, sentence_of
@@ -32,6 +33,7 @@ from . import (
     settings,
     simulation,
     slot,
+    tearing,
     vertex_attributes,
 )
 from .fields import Fields
@@ -143,15 +145,32 @@ class Bake:
                 water=water.sample(depsgraph),
             )
 
-        paths = (store.files.pc2 for store in self.stores.each)
-        bake_view.begin(dict(zip(self.uids, paths, strict=True)))
+        bake_view.begin(dict(zip(self.uids, self._growing(), strict=True)))
         try:
             yield from core_bake.bake(
                 solver, self.stores, moment_at, self.options.resume, native.InternalError
             )
+            yield from self._join(solver)
         finally:
             bake_view.end()
             self._attach()
+
+    def _growing(self) -> list[bake_view.Growing]:
+        """The caches that grow, and the edges to draw of each."""
+        pairs = zip(self._objects(), self.stores.each, strict=True)
+        return [bake_view.growing(obj, store.files.pc2, store.plan.layout) for obj, store in pairs]
+
+    def _join(self, solver: Any) -> Iterator[Step]:
+        """Leave caches of torn cloths with no more points than their tears ask for."""
+        for number, (obj, store) in enumerate(zip(self._objects(), self.stores.each, strict=True)):
+            full = store.plan.layout
+            if full is None or not (self.options.files or tearing.may_mark(obj)):
+                continue
+            least = tearing.layout(obj.data, solver.torn_edges(number))
+            work = partial(torn.arrange, store.files.pc2, store.files.tear, full, least)
+            step = Step(self.end, work)
+            yield step
+            step.result()
 
     def _describe(
         self, cloths: Sequence[bpy.types.Object], scene: bpy.types.Scene
@@ -218,6 +237,8 @@ class Bake:
                 first=own["first"],
                 end=self.end,
                 vertex_count=own["vertices"],
+                corner_count=len(obj.data.loops),
+                layout=tearing.layout(obj.data, None) if obj.boucle.use_tear else None,
                 digest=digest,
                 keeps=vertex_attributes.wanted(obj),
                 settling=scene_json.settling(description),
@@ -296,8 +317,7 @@ class Bake:
         shown: list[dict[str, bool]] = []
         for obj in cloths:
             live.drop(obj)
-            slot.ensure(obj)
-            slot.find(obj).cache.show_viewport = False
+            slot.show(slot.ensure(obj), False)
             # One of Collision costs little, and says that others collide with the cloth.
             below = [modifier for modifier in slot.below(obj) if modifier.type != "COLLISION"]
             shown.append({modifier.name: modifier.show_viewport for modifier in below})
@@ -332,7 +352,7 @@ def _restore(obj: bpy.types.Object | None, shown: dict[str, bool]) -> None:
             obj.modifiers[name].show_viewport = state
     found = slot.find(obj)
     if found is not None:
-        found.cache.show_viewport = bool(slot.played(found.cache))
+        slot.show(found, bool(slot.played(found.cache)))
 
 
 def outcome(done: Bake, error: BaseException | None) -> str:

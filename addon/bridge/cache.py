@@ -10,11 +10,12 @@ from typing import Any
 
 import bpy
 
-from ..core import cache_paths, drift, pc2, report
+from ..core import cache_paths, drift, pc2, report, torn
 from ..core.cache_paths import CacheFiles
 from ..core.progress import size
 from ..core.refusal import Refusal, cannot_write
-from . import record, registry, runtime, slot
+from ..core.torn import Layout
+from . import record, registry, runtime, slot, tearing
 
 
 def absolute(obj: bpy.types.Object, path: str) -> str:
@@ -55,10 +56,15 @@ def ensure_identity() -> None:
 
 
 def attach(obj: bpy.types.Object, pc2_path: str, remembered: dict[str, Any]) -> None:
-    """Let the object play a bake, and keep what it remembers."""
-    found = slot.ensure(obj)
+    """Let the object play a bake, and keep what it remembers.
+
+    Raises:
+        Refusal: It is of a torn cloth, and damaged, or the mesh cannot bear the mark of its tears.
+    """
+    slot.ensure(obj)
+    tearing.show(obj, torn.read(cache_paths.files_of(pc2_path).tear))
     path = cache_paths.relative_to_blend(pc2_path, bpy.data.filepath)
-    slot.play(found.cache, path, int(remembered["first"]))
+    slot.play(slot.find(obj).cache, path, int(remembered["first"]))
     obj.boucle.bake_record = json.dumps(remembered)
     obj.update_tag()
 
@@ -68,6 +74,7 @@ def detach(obj: bpy.types.Object) -> None:
     found = slot.find(obj)
     if found is not None:
         slot.silence(found.cache)
+        tearing.show(obj, None)
     obj.boucle.bake_record = ""
     obj.update_tag()
 
@@ -78,7 +85,7 @@ def reattach(obj: bpy.types.Object) -> bool:
         return False
     files = own_files(obj)
     remembered = report.read(files.report).get("bake")
-    if pc2.check(files.pc2, len(obj.data.vertices)) or not remembered:
+    if trouble(obj, files) or not remembered:
         return False
     attach(obj, files.pc2, remembered)
     return True
@@ -90,6 +97,7 @@ def follow_files() -> None:
         path = played_path(obj)
         remembered = _bake_of(cache_paths.files_of(path).report) if path else None
         if remembered and remembered.get("bake") != record_of(obj).get("bake"):
+            tearing.show(obj, torn.read(cache_paths.files_of(path).tear))
             slot.find(obj).cache.frame_start = float(remembered["first"])
             obj.boucle.bake_record = json.dumps(remembered)
 
@@ -161,8 +169,20 @@ def problem(obj: bpy.types.Object) -> str:
     path = played_path(obj)
     if not path:
         return ""
-    found = pc2.check(path, len(obj.data.vertices))
+    found = trouble(obj, cache_paths.files_of(path))
     return f'"{obj.name}": {found}' if found else ""
+
+
+def trouble(obj: bpy.types.Object, files: CacheFiles) -> str:
+    """Why Blender would not play a cache on the object; empty if it would."""
+    mesh = obj.data
+    return torn.check(files.pc2, files.tear, len(mesh.vertices), len(mesh.loops))
+
+
+def layout(obj: bpy.types.Object) -> Layout | None:
+    """How the points of the bake that the object plays, which must be playable, belong to a cloth that may tear; else None."""
+    path = played_path(obj)
+    return torn.read(cache_paths.files_of(path).tear) if path else None
 
 
 def frame_range(obj: bpy.types.Object) -> tuple[int, int]:

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 import bpy
 
-from . import cache, live, overlay_view, registry, safe_step, slot, target_group, thickness_view
+from . import (
+    cache,
+    live,
+    overlay_view,
+    registry,
+    safe_step,
+    slot,
+    target_group,
+    tear_groups,
+    thickness_view,
+)
 
 
 def switch(obj: bpy.types.Object, enabled: bool) -> None:
@@ -23,6 +33,7 @@ def switch(obj: bpy.types.Object, enabled: bool) -> None:
         cache.detach(obj)
         slot.remove(obj)
         target_group.remove_if_unused()
+        tear_groups.remove_unused()
     overlay_view.follow()
     thickness_view.follow()
 

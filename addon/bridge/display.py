@@ -10,17 +10,19 @@ import bpy
 from ..core import cache_paths, pc2
 from ..core.live_frames import LiveFrames
 from ..core.refusal import Refusal
-from . import mesh_arrays, rest, runtime, slot
+from ..core.torn import Layout
+from . import mesh_arrays, rest, runtime, slot, tearing
 
 
 def may_write(obj: bpy.types.Object) -> bool:
-    """Whether a frame may stand in the mesh: nobody else shows it, and nothing moves it above the slot."""
+    """Whether a frame may stand in the mesh: nobody else shows it, nothing moves it above the slot, and it stays whole."""
     mesh = obj.data
     return (
         mesh.library is None
         and mesh.override_library is None
         and mesh.users == 1
         and mesh.shape_keys is None
+        and not obj.boucle.use_tear
         and slot.find(obj) is not None
         and not slot.above(obj)
     )
@@ -31,6 +33,7 @@ def silence_leftover(obj: bpy.types.Object) -> None:
     found = slot.find(obj)
     if found is not None and cache_paths.is_live(found.cache.filepath):
         slot.silence(found.cache)
+        tearing.show(obj, None)
 
 
 class Display(Protocol):
@@ -95,23 +98,25 @@ class Direct:
 class TemporaryFile:
     """Frames in a PC2 of this session, which the slot's Mesh Cache plays and scrubs by itself."""
 
-    def __init__(self, uid: int) -> None:
-        """The file is made with the first frame shown."""
+    def __init__(self, uid: int, layout: Layout | None = None) -> None:
+        """The file is made with the first frame shown; of a cloth that may tear, the layout says whose its points are."""
+        self._layout = layout
         self._path = cache_paths.live_file(runtime.session_folder(), uid)
         self._writer: pc2.Writer | None = None
 
     def show(self, obj: bpy.types.Object, frames: LiveFrames, _frame: int) -> None:
         """Append what the file lacks and let Blender look at it again."""
-        modifier = slot.find(obj)
-        if modifier is None:
+        found = slot.find(obj)
+        if found is None:
             return
         try:
             is_new = self._append(obj, frames)
         except Refusal as refusal:
             runtime.messages[obj.session_uid] = str(refusal)
             return
-        if slot.played(modifier.cache) != self._path:
-            slot.play(modifier.cache, self._path, frames.first)
+        if slot.played(found.cache) != self._path:
+            tearing.show(obj, self._layout)
+            slot.play(slot.find(obj).cache, self._path, frames.first)
             is_new = True
         if is_new:
             obj.update_tag()
@@ -122,7 +127,8 @@ class TemporaryFile:
 
     def _append(self, obj: bpy.types.Object, frames: LiveFrames) -> bool:
         if self._writer is None:
-            self._writer = pc2.Writer.create(self._path, len(obj.data.vertices), frames.first)
+            count = self._layout.point_count if self._layout else len(obj.data.vertices)
+            self._writer = pc2.Writer.create(self._path, count, frames.first)
         missing = frames.positions_from(self._writer.sample_count)
         for positions in missing:
             self._writer.append(positions)

@@ -6,7 +6,7 @@ import bpy
 
 from ..core import heat_map, points, quantity, uv_scale
 from ..core.points import Points
-from . import fabrics, live, mesh_arrays, rest
+from . import fabrics, live, mesh_arrays, rest, tear_settings
 
 _UV_MAP = "UVMap"
 _STOPS = len(heat_map.VIRIDIS)
@@ -53,6 +53,8 @@ def show_heat_map(obj: bpy.types.Object, scene: bpy.types.Scene) -> bpy.types.Ma
     settings = obj.boucle
     values = live.numbers_at(obj, scene).get(one.key)
     low, high = heat_map.span(values if values is not None else ())
+    if settings.overlay_range == "tear":
+        high = tear_settings.limit(obj, one.key) or high
     if settings.overlay_range == "manual":
         low, high = settings.overlay_minimum, settings.overlay_maximum
     made = bpy.data.materials.new(f"Boucle {one.label}")

@@ -73,7 +73,11 @@ class Grab:
         if not hit:
             return False
         to_world = sampling.object_matrix(obj, depsgraph)
-        shown = points.transform(self._session.frames.nearest(self.frame).positions, to_world, "d")
+        positions = self._session.frames.nearest(self.frame).positions
+        vertices = positions[
+            : 3 * len(obj.data.vertices)
+        ]  # of a torn cloth, pieces come after them
+        shown = points.transform(vertices, to_world, "d")
         self.grip = grip.close(shown, tuple(matrix @ place), REACH * grip.size(shown))
         self._target = self.grip.targets((0.0, 0.0, 0.0))
         return True
@@ -104,7 +108,8 @@ class Grab:
             )
         moment = sessions.moment_of(self._session, obj, depsgraph)
         to_object = moment.poses[0].to_object
-        solver, held, target = self._session.solver, self.grip, self._target
+        session, solver = self._session, self._session.solver
+        held, target = self.grip, self._target
         count = len(obj.data.vertices)
 
         def work() -> tuple[points.Points, dict[str, Any]]:
@@ -114,7 +119,7 @@ class Grab:
             else:
                 solver.grab(0, held.vertices, target, held.weights)
             certificate = solver.advance()
-            return sessions.read_positions(solver, to_object, count), certificate
+            return sessions.read_positions(session, to_object, count), certificate
 
         return Step(self.frame, work)
 

@@ -199,9 +199,7 @@ def _step(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Depsgrap
     try:
         moment.aim(session.solver)
         certificate = session.solver.advance()
-        positions = read_positions(
-            session.solver, moment.poses[0].to_object, len(obj.data.vertices)
-        )
+        positions = read_positions(session, moment.poses[0].to_object, len(obj.data.vertices))
         session.frames.add(Frame(positions, certificate, read_numbers(session.solver, obj)))
     except native.FAILURES as error:
         session.solver = None
@@ -263,7 +261,9 @@ def show_anew(obj: bpy.types.Object, scene: bpy.types.Scene) -> None:
     if session is None:
         return
     is_direct = display.may_write(obj)
-    session.display = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
+    session.display = (
+        display.Direct() if is_direct else display.TemporaryFile(obj.session_uid, session.layout)
+    )
     session.basis = basis_of(obj, scene)
     session.display.show(obj, session.frames, scene.frame_current)
 

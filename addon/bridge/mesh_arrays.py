@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from array import array
+from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import bpy
@@ -48,6 +51,20 @@ def topology(mesh: bpy.types.Mesh) -> Topology:
     mesh.polygons.foreach_get("loop_start", starts)
     mesh.loops.foreach_get("vertex_index", corners)
     return Topology(starts, corners)
+
+
+def face_corners(mesh: bpy.types.Mesh) -> Iterator[tuple[int, int]]:
+    """First corner and number of corners of each face."""
+    starts = [*topology(mesh).starts, len(mesh.loops)]
+    return ((int(one), int(other - one)) for one, other in pairwise(starts))
+
+
+def next_corners(mesh: bpy.types.Mesh) -> Points:
+    """Of each corner of a face the next one, int32."""
+    out = array("i", range(1, len(mesh.loops) + 1))
+    for first, count in face_corners(mesh):
+        out[first + count - 1] = first
+    return out
 
 
 def edges(mesh: bpy.types.Mesh) -> Points:

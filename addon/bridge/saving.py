@@ -10,7 +10,7 @@ import bpy
 from ..core import cache_paths
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, cannot_write
-from . import cache, live, registry, rest, runtime, slot, takes, vertex_attributes
+from . import cache, display, live, registry, rest, runtime, slot, takes, vertex_attributes
 
 
 def before_save(path: str) -> None:
@@ -47,6 +47,7 @@ def after_load() -> None:
         if found is None:
             continue
         path = slot.played(found.cache)
+        display.silence_leftover(obj)
         if not path or cache_paths.is_live(path):
             slot.silence(found.cache)
             silent.append(obj)

@@ -7,16 +7,18 @@ from typing import Any
 
 import bpy
 
-from ..core import drift, points, quantity, scene_json
+from ..core import drift, points, quantity, scene_json, torn
 from ..core.bake import Moment
 from ..core.live_frames import Frame, LiveFrames
 from ..core.points import Points
-from ..core.quantity import Numbers
+from ..core.quantity import Numbers, Sizes
 from ..core.refusal import Refusal
+from ..core.torn import Layout
 from . import (
     colliders,
     display,
     fields,
+    mesh_arrays,
     record,
     rest,
     runtime,
@@ -25,6 +27,7 @@ from . import (
     settling,
     simulation,
     slot,
+    tearing,
     vertex_attributes,
 )
 from .colliders import Colliders
@@ -54,6 +57,8 @@ class Session:
     """A digest of settings, groups and rest shape; looked at after undo, which changes them without a word."""
     place: points.Affine
     """The object in its parent's space, when the last frame was shown."""
+    layout: Layout | None = None
+    """How the points of the frames belong to a cloth that may tear."""
     settle: LiveSettle | None = None
     """While the cloth is not yet settled: the first frame is not what it will be, and no other is simulated."""
     waits: str = ""
@@ -70,6 +75,7 @@ def build(obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.De
     """
     if not runtime.rendering:
         slot.ensure(obj)
+    layout = _layout(obj)
     description = settings.describe(obj, scene, with_groups=True)
     is_direct = display.may_write(obj) and (not runtime.rendering or rest.is_displaced(obj.data))
     local = rest.positions(obj.data) if is_direct else sampling.targets(obj, depsgraph)
@@ -88,8 +94,10 @@ def build(obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.De
     Moment([pose], met.targets(depsgraph), forces, winds, waters).aim(solver)
     how = scene_json.settling(description)
     settle = LiveSettle(solver, how, len(obj.data.vertices), to_object) if how.frames else None
+    if layout is not None:
+        local = torn.of_vertices(local, layout, mesh_arrays.topology(obj.data).corners)
     first = Frame(local, solver.certificate(), read_numbers(solver, obj))
-    shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid)
+    shown = display.Direct() if is_direct else display.TemporaryFile(obj.session_uid, layout)
     session = Session(
         uid=obj.session_uid,
         solver=solver,
@@ -103,10 +111,24 @@ def build(obj: bpy.types.Object, scene: bpy.types.Scene, depsgraph: bpy.types.De
         basis=basis_of(obj, scene),
         settings=settings_digest(obj, scene),
         place=points.affine(obj.matrix_local),
+        layout=layout,
         settle=settle,
     )
     go_on_settling(session, obj, settling.patience())
     return session
+
+
+def _layout(obj: bpy.types.Object) -> Layout | None:
+    """How Blender splits a cloth that may tear.
+
+    Raises:
+        Refusal: A render has begun, in which no data may be added.
+    """
+    if not obj.boucle.use_tear:
+        return None
+    if runtime.rendering:
+        raise Refusal(f'"{obj.name}" may tear: bake before you render, or play it first')
+    return tearing.layout(obj.data, None)
 
 
 def go_on_settling(session: Session, obj: bpy.types.Object, seconds: float) -> bool:
@@ -122,7 +144,7 @@ def go_on_settling(session: Session, obj: bpy.types.Object, seconds: float) -> b
     if not settle.is_done:
         return False
     session.settle = None
-    positions = read_positions(session.solver, settle.to_object, len(obj.data.vertices))
+    positions = read_positions(session, settle.to_object, len(obj.data.vertices))
     numbers = read_numbers(session.solver, obj)
     frame = Frame(positions, session.solver.certificate(), numbers)
     session.frames = LiveFrames(session.frames.first, frame, memory_limit())
@@ -168,19 +190,25 @@ def moment_of(session: Session, obj: bpy.types.Object, depsgraph: bpy.types.Deps
     return Moment([pose], targets, forces, winds, water)
 
 
-def read_positions(solver: Any, to_object: points.Affine, vertex_count: int) -> Points:
-    """Where the vertices are (m, object space), float32, flat."""
+def read_positions(session: Session, to_object: points.Affine, vertex_count: int) -> Points:
+    """Where the vertices are, or the points of a cloth that may tear (m, object space), float32, flat."""
+    layout = session.layout
+    count = vertex_count if layout is None else len(layout.points)
+    read = session.solver.read_positions if layout is None else session.solver.read_corners
     if to_object == points.IDENTITY:
-        out = points.empty("f", 3 * vertex_count)
-        solver.read_positions(0, out)
-        return out
-    world = points.empty("d", 3 * vertex_count)
-    solver.read_positions(0, world)
-    return points.transform(world, to_object, "f")
+        out = points.empty("f", 3 * count)
+        read(0, out)
+    else:
+        world = points.empty("d", 3 * count)
+        read(0, world)
+        out = points.transform(world, to_object, "f")
+    return out if layout is None else layout.gather(out)
 
 
 def read_numbers(solver: Any, obj: bpy.types.Object) -> Numbers:
-    """The quantities at the vertices that the user wants to see."""
-    out = quantity.empty(vertex_attributes.wanted(obj), len(obj.data.vertices))
-    quantity.read(solver, 0, out)
+    """The quantities that the user wants to see, at vertices or corners."""
+    mesh = obj.data
+    sizes = Sizes(len(mesh.vertices), len(mesh.loops), obj.boucle.use_tear)
+    out = quantity.empty(vertex_attributes.wanted(obj), sizes)
+    quantity.read(solver, 0, out, sizes)
     return out

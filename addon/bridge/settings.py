@@ -9,7 +9,7 @@ import bpy
 
 from ..core import scene_json
 from ..core.scene_json import Groups, World
-from . import animation, colliders, pins, shape, vertex_groups, winds
+from . import animation, colliders, pins, shape, tear_settings, vertex_groups, winds
 
 _DATA = frozenset({"POINTER", "COLLECTION"})
 
@@ -75,7 +75,8 @@ def groups(obj: bpy.types.Object) -> Groups:
         name = settings.collision_group
         not_objects = _vertices(obj, "Object Collision Vertex Group", name)
     weights = list(held.values())
-    return Groups(list(held), wind, not_self or [], not_objects or [], shape.groups(obj), weights)
+    shaped, torn = shape.groups(obj), tear_settings.groups(obj)
+    return Groups(list(held), wind, not_self or [], not_objects or [], shaped, weights, torn)
 
 
 def describe(

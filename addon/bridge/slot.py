@@ -1,7 +1,8 @@
-"""The slot: the two modifiers that stand where the simulation belongs in a cloth's stack.
+"""The slot: the modifiers that stand where the simulation belongs in a cloth's stack.
 
-First the node group that stores positions as `boucle_target`, then the Mesh Cache that plays a result. What is above (armature,
-hooks, lattices) moves the pins and the rest shape; what is below (subdivision, thickness) works on the simulated cloth.
+First the node group that stores positions as `boucle_target`, then the Mesh Cache that plays a result; of a torn cloth, around
+it, a node group that splits edges and a Weld. What is above (armature, hooks, lattices) moves the pins and the rest shape; what
+is below (subdivision, thickness) works on the simulated cloth.
 """
 
 from __future__ import annotations
@@ -10,8 +11,8 @@ from typing import NamedTuple
 
 import bpy
 
-from .._identifiers import CACHE_MODIFIER, TARGET_MODIFIER
-from . import target_group
+from .._identifiers import CACHE_MODIFIER, MEND_MODIFIER, TARGET_MODIFIER, TEAR_MODIFIER
+from . import target_group, tear_groups
 
 COUNT_CHANGING = frozenset({
     "ARRAY", "BEVEL", "BOOLEAN", "BUILD", "DECIMATE", "EDGE_SPLIT", "EXPLODE", "MASK",
@@ -26,10 +27,18 @@ KEEPING_FIRST = frozenset({"ARRAY", "EDGE_SPLIT", "MULTIRES", "SOLIDIFY", "SUBSU
 
 
 class Slot(NamedTuple):
-    """The two modifiers."""
+    """The modifiers."""
 
     target: bpy.types.NodesModifier
     cache: bpy.types.MeshCacheModifier
+    tear: bpy.types.NodesModifier | None
+    """Of a torn cloth, and so the next."""
+    mend: bpy.types.WeldModifier | None
+
+    @property
+    def last(self) -> bpy.types.Modifier:
+        """The last of them."""
+        return self.cache if self.mend is None else self.mend
 
 
 def find(obj: bpy.types.Object) -> Slot | None:
@@ -42,7 +51,8 @@ def find(obj: bpy.types.Object) -> Slot | None:
     cache = next((m for m in caches if m.name.startswith(CACHE_MODIFIER)), None)
     if target is None or cache is None:
         return None
-    return Slot(target, cache)
+    tear = next((m for m in obj.modifiers if _is_tear(m)), None)
+    return Slot(target, cache, tear, next((m for m in obj.modifiers if _is_mend(m)), None))
 
 
 def ensure(obj: bpy.types.Object) -> Slot:
@@ -64,6 +74,43 @@ def ensure(obj: bpy.types.Object) -> Slot:
     for offset, name in enumerate((target.name, cache.name)):
         obj.modifiers.move(obj.modifiers.find(name), place + offset)
     return find(obj)
+
+
+def add_tear(obj: bpy.types.Object) -> Slot:
+    """What a torn cloth needs around the Mesh Cache."""
+    remove_tear(obj)
+    cache = find(obj).cache.name
+    tear = obj.modifiers.new(TEAR_MODIFIER, "NODES")
+    tear.node_group = tear_groups.ensure(tear_groups.ALL)
+    mend = obj.modifiers.new(MEND_MODIFIER, "WELD")
+    mend.mode = "ALL"
+    for modifier in (tear, mend):
+        modifier.show_expanded = modifier.show_in_editmode = False
+    place = obj.modifiers.find(cache)
+    for offset, name in enumerate((tear.name, cache, mend.name)):
+        obj.modifiers.move(obj.modifiers.find(name), place + offset)
+    return find(obj)
+
+
+def remove_tear(obj: bpy.types.Object) -> None:
+    """Take that away."""
+    for modifier in [m for m in obj.modifiers if _is_tear(m) or _is_mend(m)]:
+        obj.modifiers.remove(modifier)
+
+
+def _is_tear(modifier: bpy.types.Modifier) -> bool:
+    return modifier.type == "NODES" and bool(tear_groups.kind_of(modifier.node_group))
+
+
+def _is_mend(modifier: bpy.types.Modifier) -> bool:
+    return modifier.type == "WELD" and modifier.name.startswith(MEND_MODIFIER)
+
+
+def show(found: Slot, on: bool) -> None:
+    """Let what plays a result be seen in viewports or not."""
+    for modifier in (found.tear, found.cache, found.mend):
+        if modifier is not None:
+            modifier.show_viewport = on
 
 
 def play(modifier: bpy.types.MeshCacheModifier, path: str, first_frame: int) -> None:
@@ -106,7 +153,7 @@ def remove(obj: bpy.types.Object) -> None:
     for modifier in list(obj.modifiers):
         is_target = modifier.type == "NODES" and target_group.is_ours(modifier.node_group)
         is_cache = modifier.type == "MESH_CACHE" and modifier.name.startswith(CACHE_MODIFIER)
-        if is_target or is_cache:
+        if is_target or is_cache or _is_tear(modifier) or _is_mend(modifier):
             obj.modifiers.remove(modifier)
 
 
@@ -125,7 +172,7 @@ def below(obj: bpy.types.Object) -> list[bpy.types.Modifier]:
     if found is None:
         return []
     names = [modifier.name for modifier in obj.modifiers]
-    return list(obj.modifiers)[names.index(found.cache.name) + 1 :]
+    return list(obj.modifiers)[names.index(found.last.name) + 1 :]
 
 
 def hiding(

@@ -11,7 +11,7 @@ import time
 
 import bpy
 
-from ..core import cache_paths, pc2, report, store, takes
+from ..core import cache_paths, report, store, takes
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, cannot_write
 from . import cache, live, registry, runtime, take_settings
@@ -61,7 +61,7 @@ def restore(obj: bpy.types.Object, number: int, with_settings: bool) -> str:
     """
     take = chosen(obj, number)
     files = files_of(obj, take)
-    trouble = pc2.check(files.pc2, len(obj.data.vertices))
+    trouble = cache.trouble(obj, files)
     if trouble:
         raise Refusal(f'"{obj.name}", take "{take.name}": {trouble}')
     record = report.read(files.report).get("bake")

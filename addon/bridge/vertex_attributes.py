@@ -1,4 +1,6 @@
-"""The attributes of a cloth's mesh that tell numbers at its vertices in the frame that is shown: `boucle_strain` and its like.
+"""The attributes of a cloth's mesh that tell numbers of the frame that is shown: `boucle_strain` and its like.
+
+They are told at its vertices, or at the corners of its faces where it may tear.
 
 They are there only while they are true: no attribute where nothing is known of a frame, none in a saved file. Only a local
 mesh of a single user gets them.
@@ -11,7 +13,7 @@ import bpy
 
 from ..core import cache_paths, points, quantity, vertex_file
 from ..core.points import Points
-from ..core.quantity import Numbers, Quantity
+from ..core.quantity import Numbers, Quantity, Sizes
 from . import cache, runtime
 
 
@@ -31,11 +33,12 @@ def of_bake(obj: bpy.types.Object, frame: int) -> Numbers:
     keys = wanted(obj)
     if not path or not keys or cache.problem(obj):
         return {}
-    count, first = len(obj.data.vertices), cache.frame_range(obj)[0]
+    mesh, first = obj.data, cache.frame_range(obj)[0]
+    sizes = Sizes(len(mesh.vertices), len(mesh.loops), cache.layout(obj) is not None)
     files = cache_paths.files_of(path)
     out: dict[str, Points] = {}
     for key in keys:
-        file = getattr(files, key)
+        file, count = getattr(files, key), sizes.count(key)
         last = vertex_file.row_count(file, count) - 1
         row = vertex_file.read(file, min(max(frame - first, 0), last), count)
         if row is not None:
@@ -48,25 +51,38 @@ def show(obj: bpy.types.Object, numbers: Numbers) -> None:
     mesh = obj.data
     if mesh.library is not None or mesh.override_library is not None or mesh.is_editmode:
         return
-    written = [_show(mesh, one, numbers.get(one.key)) for one in quantity.ALL]
+    at_corners = obj.boucle.use_tear
+    written = [_show(mesh, one, numbers.get(one.key), at_corners) for one in quantity.ALL]
     if any(written):
         mesh.update()
 
 
-def _show(mesh: bpy.types.Mesh, one: Quantity, values: Points | None) -> bool:
+def domain_of(mesh: bpy.types.Mesh, one: Quantity, values: Points, may_tear: bool) -> str:
+    """Where values belong, by their number: vertices or corners; empty for another mesh. A mesh may have as many of both."""
+    corners, vertices = len(values) == len(mesh.loops), len(values) == len(mesh.vertices)
+    if corners and (not vertices or may_tear or not one.reader):
+        return "CORNER"
+    return "POINT" if vertices and one.reader else ""
+
+
+def _show(mesh: bpy.types.Mesh, one: Quantity, values: Points | None, may_tear: bool) -> bool:
     """Write one attribute or take it away; whether it was written."""
     attribute = _find(mesh, one)
-    if values is None or mesh.users != 1 or len(values) != len(mesh.vertices):
+    domain = domain_of(mesh, one, values, may_tear) if values is not None else ""
+    if not domain or mesh.users != 1:
         if attribute is None:
             return False
         if not runtime.rendering:
             mesh.attributes.remove(attribute)
             return False
-        values = points.empty("f", len(mesh.vertices))
-    if attribute is None:
+        domain, values = attribute.domain, points.empty("f", len(attribute.data))
+    if attribute is not None and attribute.domain != domain and not runtime.rendering:
+        mesh.attributes.remove(attribute)
+        attribute = None
+    if attribute is None or attribute.domain != domain:
         if runtime.rendering:
             return False
-        attribute = mesh.attributes.new(one.attribute, "FLOAT", "POINT")
+        attribute = mesh.attributes.new(one.attribute, "FLOAT", domain)
     attribute.data.foreach_set("value", values)
     return True
 
@@ -86,15 +102,18 @@ def hide(mesh: bpy.types.Mesh) -> None:
 
 def _hide_in_edit_mode(mesh: bpy.types.Mesh) -> None:
     edited = bmesh.from_edit_mesh(mesh)
-    names = {one.attribute for one in quantity.ALL} & set(edited.verts.layers.float.keys())
-    for name in names:
-        edited.verts.layers.float.remove(edited.verts.layers.float[name])
-    if names:
+    ours = {one.attribute for one in quantity.ALL}
+    found = False
+    for layers in (edited.verts.layers.float, edited.loops.layers.float):
+        for name in ours & set(layers.keys()):
+            layers.remove(layers[name])
+            found = True
+    if found:
         bmesh.update_edit_mesh(mesh)
 
 
 def _find(mesh: bpy.types.Mesh, one: Quantity) -> bpy.types.Attribute | None:
     """The attribute, if it is ours and not a stranger's of the same name."""
     attribute = mesh.attributes.get(one.attribute)
-    is_ours = attribute is not None and attribute.domain == "POINT"
+    is_ours = attribute is not None and attribute.domain in {"POINT", "CORNER"}
     return attribute if is_ours and attribute.data_type == "FLOAT" else None

@@ -7,7 +7,7 @@ import bpy
 from ..core import points, scene_json, worst
 from ..core.refusal import Refusal
 from ..core.worst import Edge
-from . import certificate, live, mesh_arrays, shown, simulation, start_pose
+from . import certificate, live, mesh_arrays, shown, simulation, start_pose, tearing
 
 ALLOWANCE = 1e-3
 """An edge is over the rate from a tenth of a percent of its rest length beyond it, as in the certificates."""
@@ -31,18 +31,20 @@ def edges(obj: bpy.types.Object, scene: bpy.types.Scene) -> list[Edge]:
     Raises:
         Refusal, native.BoucleError: There is no result, or the start frame cannot be looked at.
     """
-    positions = shown.at_frame(obj, scene.frame_current)
+    positions, layout = shown.points_at_frame(obj, scene.frame_current), shown.layout(obj)
     if positions is None:
         raise Refusal(f'"{obj.name}" has no result: play or bake it first')
     session = live.session_of(obj)
-    solver = session.solver if session is not None else None
+    is_whole = session is not None and layout is None
+    solver = session.solver if is_whole else None
     if solver is None:
         start = start_pose.sample(obj, scene)
         alone = scene_json.without_contact(start.description)
         solver = simulation.maker(alone, [start.given])()
     lengths = worst.rest_lengths(solver.read_springs(0))
     world = points.transform(positions, mesh_arrays.world_matrix(obj), "d")
-    return worst.edges(world, mesh_arrays.edges(obj.data), lengths)
+    places = tearing.edge_points(obj.data, layout) if layout is not None else None
+    return worst.edges(world, mesh_arrays.edges(obj.data), lengths, places)
 
 
 def over_the_rate(obj: bpy.types.Object, found: list[Edge]) -> list[Edge]:

@@ -17,10 +17,11 @@ from typing import Any, NamedTuple, Protocol
 from . import points, quantity
 from .fields import Forces
 from .points import Affine, Points
-from .quantity import Numbers
+from .quantity import Numbers, Sizes
 from .settle import Settle
 from .shape import Shape
-from .store import Sample, Stores
+from .store import Plan, Sample, Stores
+from .torn import Layout
 
 
 class Simulation(Protocol):
@@ -40,6 +41,8 @@ class Simulation(Protocol):
     def certificate(self, cloth: int | None = None) -> dict[str, Any]: ...
     def set_positions(self, cloth: int, positions: Points) -> None: ...
     def read_positions(self, cloth: int, out: Points) -> None: ...
+    def read_corners(self, cloth: int, out: Points) -> None: ...
+    def read_corner_numbers(self, cloth: int, quantity: str, out: Points) -> None: ...
     def read_strain(self, cloth: int, out: Points) -> None: ...
     def read_tension(self, cloth: int, out: Points) -> None: ...
     def read_contacts(self, cloth: int, out: Points) -> None: ...
@@ -108,8 +111,30 @@ class Buffers(NamedTuple):
     """What is read of a cloth after each frame."""
 
     world: Points
-    """Positions (m), world space, float64."""
+    """Positions (m) of the vertices, or of the corners of a cloth that may tear, world space, float64."""
     numbers: Numbers
+    sizes: Sizes
+    layout: Layout | None
+
+    @classmethod
+    def of(cls, plan: Plan) -> Buffers:
+        """Room for what a plan keeps."""
+        count = plan.corner_count if plan.layout else plan.vertex_count
+        numbers = quantity.empty(plan.keeps, plan.sizes)
+        return cls(points.empty("d", 3 * count), numbers, plan.sizes, plan.layout)
+
+    def read(self, simulation: Simulation, cloth: int) -> None:
+        """Read a cloth of a simulation."""
+        if self.layout is None:
+            simulation.read_positions(cloth, self.world)
+        else:
+            simulation.read_corners(cloth, self.world)
+        quantity.read(simulation, cloth, self.numbers, self.sizes)
+
+    def positions(self, to_object: Affine) -> Points:
+        """Positions (m) of the points of a sample, object space, float32."""
+        positions = points.transform(self.world, to_object, "f")
+        return positions if self.layout is None else self.layout.gather(positions)
 
 
 class Step:
@@ -169,13 +194,13 @@ def bake(
         InterruptionError: The step under way was interrupted; earlier frames stay.
     """
     plan = stores.plan
-    buffers = [_buffers(store.plan.vertex_count, store.plan.keeps) for store in stores.each]
+    buffers = [Buffers.of(store.plan) for store in stores.each]
     pending: tuple[Step, Moment] | None = None
     usable = True
 
     def commit(step: Step, moment: Moment) -> None:
         samples = [
-            Sample(points.transform(read.world, pose.to_object, "f"), read.numbers, certificate)
+            Sample(read.positions(pose.to_object), read.numbers, certificate)
             for read, pose, certificate in zip(buffers, moment.poses, step.result(), strict=True)
         ]
         stores.write(step.frame, samples, step.seconds)
@@ -220,10 +245,6 @@ def _settle(simulation: Simulation, stores: Stores) -> Iterator[Step]:
         step.result()
 
 
-def _buffers(vertex_count: int, keeps: tuple[str, ...]) -> Buffers:
-    return Buffers(points.empty("d", 3 * vertex_count), quantity.empty(keeps, vertex_count))
-
-
 def _advance(
     simulation: Simulation, moment: Moment, buffers: Sequence[Buffers]
 ) -> list[dict[str, Any]]:
@@ -236,8 +257,7 @@ def _read(
 ) -> list[dict[str, Any]]:
     """Fill the buffers and give the certificate of each cloth; `certificate` is that of all."""
     for cloth, read in enumerate(buffers):
-        simulation.read_positions(cloth, read.world)
-        quantity.read(simulation, cloth, read.numbers)
+        read.read(simulation, cloth)
     if len(buffers) == 1:
         return [certificate]
     return [simulation.certificate(cloth) for cloth in range(len(buffers))]

@@ -16,10 +16,13 @@ class CacheFiles(NamedTuple):
     report: str
     checkpoint: str
     strain: str
-    """There only if the bake keeps the strain; so the next three."""
+    """There only if the bake keeps the strain; so the next four."""
     tension: str
     contact: str
     intersection: str
+    force: str
+    tear: str
+    """Of a cloth that tears: how the points belong to it."""
 
     @property
     def previous(self) -> CacheFiles:
@@ -43,7 +46,16 @@ def _with_middle(path: str, word: str) -> str:
 def files_of(pc2: str) -> CacheFiles:
     """The files that belong to a PC2 file."""
     stem = os.path.splitext(pc2)[0]
-    endings = ("json", "checkpoint", "strain", "tension", "contact", "intersection")
+    endings = (
+        "json",
+        "checkpoint",
+        "strain",
+        "tension",
+        "contact",
+        "intersection",
+        "force",
+        "tear",
+    )
     return CacheFiles(pc2, *(f"{stem}.{ending}" for ending in endings))
 
 

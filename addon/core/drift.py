@@ -26,6 +26,14 @@ _WORDS = {
     "name": "",
     "self": "self collision",
     "enabled": "collisions",
+    "tear.enabled": "tearing",
+    "tear.force": "tear force",
+    "tear.strain": "tear strain",
+    "tear.stress": "tear stress",
+    "tear.noise": "tear noise",
+    "tear.seed": "tear seed",
+    "tear.start": "settling",
+    "openings.frame": "opening frame",
     "thickness": "collision thickness",
     "friction": "collision friction",
     "shrink": "shrinking",
@@ -44,6 +52,8 @@ _VERTICES = {
     "shrink.weights": "weights of the shrink group",
     "pressure.weights": "weights of the pressure group",
     "sewing.seams": "loose edges",
+    "tear.strength": "weights of the strength group",
+    "openings.pairs": "edges that open",
     "fabric.uv": "UV map",
     "excluded_from_colliders": "vertices left out of collision with objects",
 }
@@ -130,7 +140,7 @@ def _words(key: str) -> str:
     if _list_words(key):
         return _list_words(key)
     parts = [part for part in key.split(".") if not part.isdigit()]
-    return _WORDS.get(parts[-1]) or parts[-1].replace("_", " ")
+    return _WORDS.get(".".join(parts[-2:])) or _WORDS.get(parts[-1]) or parts[-1].replace("_", " ")
 
 
 def _list_words(key: str) -> str:

@@ -10,7 +10,7 @@ Fabric = Mapping[str, Any]
 
 _OF_FABRIC = (
     "density", "friction", "deformation_rate", "stretch_warp", "stretch_weft", "shear", "bend_warp",
-    "bend_weft", "damping_ratio",
+    "bend_weft", "damping_ratio", "tear_stress",
 )  # fmt: skip
 _OF_SPRINGS = (
     "stretch", "bend", "damping_stretch", "damping_shear", "damping_bend", "damping_law",
@@ -20,6 +20,8 @@ _SWITCHES = {
     "mass_mode": "density",
     "damping_ratio_per_kind": False,
     "damping_per_kind": True,
+    "tear_force": 0.0,
+    "tear_strain": 0.0,
 }
 """Which of the numbers hold."""
 
@@ -77,5 +79,6 @@ def sentence(fabric: Fabric) -> str:
     ]
     return (
         f"{1e3 * fabric['density']:.0f} g/m², {1e3 * fabric['thickness']:.2g} mm thick; along warp and weft it "
-        f"stretches by {both[0]} kN/m and bends by {both[1]} µN·m; shear {fabric['shear']:.0f} N/m"
+        f"stretches by {both[0]} kN/m and bends by {both[1]} µN·m; shear {fabric['shear']:.0f} N/m; "
+        f"it tears at {1e-3 * fabric['tear_stress']:.2g} kN/m"
     )

@@ -96,6 +96,43 @@ def scaled(numbers: Points, factor: float) -> Points:
     return numpy.asarray(numbers, dtype="d") * factor
 
 
+def take(flat: Points, numbers: Points) -> Points:
+    """The points of these numbers, float32, flat."""
+    numpy = numpy_module()
+    if numpy is None:
+        return array("f", (flat[3 * number + axis] for number in numbers for axis in range(3)))
+    return numpy.asarray(flat, dtype="f").reshape(-1, 3)[numpy.asarray(numbers)].reshape(-1)
+
+
+def scatter(flat: Points, numbers: Points, count: int) -> Points:
+    """So many points, float32, flat: each of the given ones put at its number."""
+    out = empty("f", 3 * count)
+    numpy = numpy_module()
+    if numpy is None:
+        for place, number in enumerate(numbers):
+            out[3 * number : 3 * number + 3] = array("f", flat[3 * place : 3 * place + 3])
+        return out
+    out.reshape(-1, 3)[numpy.asarray(numbers)] = numpy.asarray(flat, dtype="f").reshape(-1, 3)
+    return out
+
+
+def joined(one: Points, other: Points) -> Points:
+    """Two buffers of float32 as one."""
+    numpy = numpy_module()
+    return array("f", one) + array("f", other) if numpy is None else numpy.concatenate((one, other))
+
+
+def pairs(count: int) -> Points:
+    """The pairs of each of so many points and the one that stands so many places after it, int32, flat."""
+    return array("i", (number + part for number in range(count) for part in (0, count)))
+
+
+def integers(data: bytes) -> Points:
+    """int32 of bytes, a buffer of its own."""
+    numpy = numpy_module()
+    return array("i", data) if numpy is None else numpy.frombuffer(data, dtype="i").copy()
+
+
 def _transform_slowly(points: Points, matrix: Affine, kind: str) -> Points:
     if matrix == IDENTITY:
         return array(kind, points)

@@ -1,4 +1,4 @@
-"""What is told of every vertex beside its position: one number a frame."""
+"""What is told beside positions: one number a frame at every vertex, or at every corner of the faces where a cloth may tear."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from .._identifiers import (
     CONTACT_ATTRIBUTE,
+    FORCE_ATTRIBUTE,
     INTERSECTION_ATTRIBUTE,
     STRAIN_ATTRIBUTE,
     TENSION_ATTRIBUTE,
@@ -15,7 +16,7 @@ from . import points
 from .points import Points
 
 Numbers = Mapping[str, Points]
-"""Values at the vertices, float32 (n,), by the key of their quantity."""
+"""Values, float32, by the key of their quantity: at the vertices (n,), or at the corners of faces (c,)."""
 
 
 class Quantity(NamedTuple):
@@ -26,7 +27,7 @@ class Quantity(NamedTuple):
     attribute: str
     """The mesh's attribute."""
     reader: str
-    """The method of a simulation that tells it."""
+    """The method of a simulation that tells it of vertices; empty where it is of edges and told at corners alone."""
     label: str
     unit: str
     """In which the legend tells it; empty where it is counted."""
@@ -40,17 +41,40 @@ CONTACT = Quantity("contact", CONTACT_ATTRIBUTE, "read_contacts", "Contact", "N"
 INTERSECTION = Quantity(
     "intersection", INTERSECTION_ATTRIBUTE, "read_intersections", "Intersections", "", 1.0
 )
-ALL = (STRAIN, TENSION, CONTACT, INTERSECTION)
+FORCE = Quantity("force", FORCE_ATTRIBUTE, "", "Force in Edges", "N", 1.0)
+"""At each corner, of the edge from there to the next corner of the face."""
+ALL = (STRAIN, TENSION, CONTACT, INTERSECTION, FORCE)
 BY_KEY = {quantity.key: quantity for quantity in ALL}
 
 
-def empty(keys: tuple[str, ...], vertex_count: int) -> dict[str, Points]:
+class Sizes(NamedTuple):
+    """How many numbers a cloth has."""
+
+    vertices: int
+    corners: int
+    is_torn: bool = False
+    """Whether it may tear: then each side of a tear has its own numbers."""
+
+    def at_corners(self, key: str) -> bool:
+        """Whether a quantity is told at the corners of faces."""
+        return self.is_torn or not BY_KEY[key].reader
+
+    def count(self, key: str) -> int:
+        """How many numbers of a quantity there are."""
+        return self.corners if self.at_corners(key) else self.vertices
+
+
+def empty(keys: tuple[str, ...], sizes: Sizes) -> dict[str, Points]:
     """A buffer for each quantity that is asked for."""
-    return {key: points.empty("f", vertex_count) for key in keys}
+    return {key: points.empty("f", sizes.count(key)) for key in keys}
 
 
-def read(simulation: Any, cloth: int, out: Numbers) -> None:
+def read(simulation: Any, cloth: int, out: Numbers, sizes: Sizes) -> None:
     """Fill the buffers with the numbers of a cloth of a simulation."""
     for quantity in ALL:
-        if quantity.key in out:
+        if quantity.key not in out:
+            continue
+        if sizes.at_corners(quantity.key):
+            simulation.read_corner_numbers(cloth, quantity.key, out[quantity.key])
+        else:
             getattr(simulation, quantity.reader)(cloth, out[quantity.key])

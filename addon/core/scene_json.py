@@ -6,11 +6,12 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from . import flow, shape
+from . import flow, shape, tear
 from .points import Affine
 from .refusal import Refusal
 from .settle import Settling
 from .shape import ShapeGroups, decimal
+from .tear import TearGroups
 
 IMPLICIT = frozenset({"bdf2", "implicit_euler"})
 """Integrators that are stable at any step."""
@@ -45,6 +46,7 @@ class Groups(NamedTuple):
     shape: ShapeGroups = ShapeGroups()
     pin_weights: Sequence[float] = ()
     """One a pin; all are 1 if it is empty."""
+    tear: TearGroups = TearGroups()
 
 
 class CollisionObject(NamedTuple):
@@ -142,6 +144,9 @@ def _cloth(name: str, values: Values, groups: Groups, meets: bool) -> dict[str, 
             cloth[key] = decimal(values[key])
     cloth.update(shape.describe(values, groups.shape))
     cloth["collision"] = collision(values, groups, meets)
+    torn = tear.describe(name, values, groups.tear)
+    if torn:
+        cloth["tear"] = torn
     bulk = flow.bulk(values)
     if bulk:
         cloth["water"] = bulk

@@ -8,14 +8,15 @@ import uuid
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
-from . import checkpoint_file, quantity, report, vertex_file
+from . import checkpoint_file, quantity, report, torn, vertex_file
 from .cache_paths import CacheFiles
 from .checkpoint_file import Checkpoint
 from .pc2 import Writer
 from .points import Points
-from .quantity import Numbers
+from .quantity import Numbers, Sizes
 from .refusal import Refusal, cannot_write
 from .settle import Settling
+from .torn import Layout
 
 CHECKPOINT_SECONDS = 5.0
 """A kill loses at most about this much work; writing a checkpoint takes milliseconds."""
@@ -43,6 +44,20 @@ class Plan(NamedTuple):
     """Keys of the quantities that are kept beside the positions."""
     settling: Settling = Settling()
     """Before the start."""
+    corner_count: int = 0
+    """Corners of the faces."""
+    layout: Layout | None = None
+    """Of a cloth that may tear, where it is split along all edges."""
+
+    @property
+    def point_count(self) -> int:
+        """Points of a sample."""
+        return self.layout.point_count if self.layout else self.vertex_count
+
+    @property
+    def sizes(self) -> Sizes:
+        """How many numbers there are."""
+        return Sizes(self.vertex_count, self.corner_count, self.layout is not None)
 
 
 class Sample(NamedTuple):
@@ -88,14 +103,18 @@ class Store:
                     os.remove(path)
         except OSError as error:
             raise cannot_write(self.files.pc2, error) from error
-        self._writer = Writer.create(self.files.pc2, self.plan.vertex_count, self.plan.first)
+        self._writer = Writer.create(self.files.pc2, self.plan.point_count, self.plan.first)
+        if self.plan.layout:
+            torn.write(self.files.tear, self.plan.layout)
         for key in self.plan.keeps:
-            path = getattr(self.files, key)
-            self._numbers[key] = vertex_file.Writer.create(path, self.plan.vertex_count)
+            path, count = getattr(self.files, key), self.plan.sizes.count(key)
+            self._numbers[key] = vertex_file.Writer.create(path, count)
 
     def resume(self, sample_count: int) -> None:
         """Go on after so many samples."""
-        self._writer = Writer.reopen(self.files.pc2, self.plan.vertex_count, sample_count)
+        if self.plan.layout:
+            torn.restore_corners(self.files.pc2, self.files.tear, self.plan.layout)
+        self._writer = Writer.reopen(self.files.pc2, self.plan.point_count, sample_count)
         self._resume_numbers(sample_count)
         self.rows.keep_first(sample_count, report.read(self.files.report))
 
@@ -104,7 +123,8 @@ class Store:
         for key in (one.key for one in quantity.ALL):
             path, writer = getattr(self.files, key), None
             if key in self.plan.keeps:
-                writer = vertex_file.Writer.reopen(path, self.plan.vertex_count, sample_count)
+                count = self.plan.sizes.count(key)
+                writer = vertex_file.Writer.reopen(path, count, sample_count)
             if writer is not None:
                 self._numbers[key] = writer
             elif os.path.isfile(path):

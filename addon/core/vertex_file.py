@@ -1,6 +1,6 @@
-"""A number at each vertex of a baked cloth (see `quantity`), beside its PC2: a row for every sample.
+"""A number at each vertex of a baked cloth, or corner of its faces (see `quantity`), beside its PC2: a row for every sample.
 
-Layout, little-endian: a magic word of 16 bytes by the quantity, which the file's ending tells, too; int32 vertex count, int32
+Layout, little-endian: a magic word of 16 bytes by the quantity, which the file's ending tells, too; int32 count, int32
 zero; then one row a sample, float32 (n,). Only whole rows count, so that the file is a valid prefix at any moment.
 """
 
@@ -20,6 +20,7 @@ _MAGIC = {
     ".tension": b"BOUCLE TENSION 1",
     ".contact": b"BOUCLE CONTACT 1",
     ".intersection": b"BOUCLE CROSSED 1",
+    ".force": b"BOUCLE FORCE 1\n\n",
 }
 
 

@@ -46,21 +46,27 @@ def rest_lengths(springs: Sequence[bytes]) -> dict[tuple[int, int], float]:
 
 
 def edges(
-    positions: Sequence[float], ends: Sequence[int], lengths: Mapping[tuple[int, int], float]
+    positions: Sequence[float],
+    ends: Sequence[int],
+    lengths: Mapping[tuple[int, int], float],
+    places: Sequence[int] | None = None,
 ) -> list[Edge]:
     """The strain of every edge whose rest length is known, the largest first.
 
     Args:
-        positions: x, y, z of each vertex (m, world space), flat.
+        positions: x, y, z of each vertex, or of each point of a cloth that may tear (m, world space), flat.
         ends: The two vertices of each edge, flat.
         lengths: Rest length (m) by the vertices of an edge, the lower first.
+        places: The two points of each edge, flat; its vertices if None.
     """
+    at = ends if places is None else places
     values = [float(value) for value in positions]
     found = []
     for number in range(len(ends) // 2):
         one, other = int(ends[2 * number]), int(ends[2 * number + 1])
         rest = lengths.get((min(one, other), max(one, other)))
         if rest:
-            length = math.dist(values[3 * one : 3 * one + 3], values[3 * other : 3 * other + 3])
+            here, there = 3 * int(at[2 * number]), 3 * int(at[2 * number + 1])
+            length = math.dist(values[here : here + 3], values[there : there + 3])
             found.append(Edge(number, length / rest - 1.0))
     return sorted(found, key=lambda edge: (-edge.strain, edge.number))

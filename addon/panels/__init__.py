@@ -17,6 +17,7 @@ from . import (
     springs,
     tailoring,
     takes,
+    tear,
     water,
 )
 
@@ -41,6 +42,7 @@ _OTHERS = (
     result,
     tailoring,
     takes,
+    tear,
     water,
 )
 

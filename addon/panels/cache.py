@@ -28,7 +28,7 @@ class BOUCLE_PT_cache(PhysicsPanel, Panel):
         damped.active = settings.settle_frames > 0
         damped.prop(settings, "settle_damped")
         column.prop(settings, "use_live")
-        for name in ("use_strain", "use_tension", "use_contact", "use_intersection"):
+        for name in ("use_strain", "use_tension", "use_force", "use_contact", "use_intersection"):
             column.prop(settings, name)
         layout = self.layout
         layout.operator(Operators.BAKE).resume = False

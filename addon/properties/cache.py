@@ -107,6 +107,12 @@ class CacheProperties:
         "keep it beside the cache",
         default=False, options=FIXED, override=OVERRIDABLE, update=attributes_switched,
     )  # fmt: skip
+    use_force: BoolProperty(
+        name="Force Attribute",
+        description="Tell the force in each edge in the attribute boucle_force, at each corner of a face that of the edge to "
+        "the next corner (N); bakes keep it beside the cache",
+        default=False, options=FIXED, override=OVERRIDABLE, update=attributes_switched,
+    )  # fmt: skip
     certificate: StringProperty(
         name="Certificate",
         description="Stretch, work, energy and hash of the present frame, live or baked",

@@ -22,6 +22,7 @@ from .solver import SolverProperties
 from .springs import SpringProperties
 from .steps import StepProperties
 from .takes import BOUCLE_PG_take, TakeProperties
+from .tear import TearProperties
 from .water import WaterProperties
 
 
@@ -35,6 +36,7 @@ class BOUCLE_PG_cloth(
     PressureProperties,
     SewingProperties,
     CollisionProperties,
+    TearProperties,
     ForceProperties,
     WaterProperties,
     FieldWeightProperties,

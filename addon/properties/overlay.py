@@ -15,6 +15,7 @@ class OverlayProperties:
             ("none", "None", "No colours"),
             ("strain", "Strain", "Largest strain of the edges at each vertex (L/L0 - 1)"),
             ("tension", "Tension", "Largest tension of the springs at each vertex (N)"),
+            ("force", "Force in Edges", "Force in each edge, drawn on the edge (N)"),
             ("contact", "Contact", "Force with which contacts press each vertex (N)"),
             ("intersection", "Intersections", "Edges and faces at each vertex that pass through others"),
         ),
@@ -25,6 +26,7 @@ class OverlayProperties:
         description="Which numbers the colours span",
         items=(
             ("auto", "Automatic", "From 0 to a round number above the largest in the present frame"),
+            ("tear", "Tearing", "From 0 to what an edge bears before it tears, where it tears; automatic for others"),
             ("manual", "Manual", "From Minimum to Maximum, the same in every frame"),
         ),
         default="auto", options=FIXED, override=OVERRIDABLE, update=overlay_redrawn,

@@ -258,6 +258,20 @@ class Simulation:
         that keeps its number.
         """
 
+    def read_corner_numbers(self, cloth: int, quantity: str, out: Buffer) -> None:
+        """Fill out, float32 (c,), with a number at each corner of each face, in the order of the faces.
+
+        Args:
+            cloth: Its number.
+            quantity: "strain", "tension", "contact" or "intersection": what `read_strain`, `read_tension`, `read_contacts` or
+                `read_intersections` tell of a vertex, for the vertex that the corner is at now. Or "force": the tension (N) of
+                the edge from this corner to the next of its face, as `edge_tension` has it.
+            out: Each side of a tear has its own number.
+
+        Raises:
+            SceneError: There is no such quantity.
+        """
+
     def vertex_origins(self, cloth: int) -> list[int]:
         """List, of each vertex that the cloth has now, the vertex that it was: itself, but for those that tearing has added.
 

@@ -367,3 +367,49 @@ def test_another_blender_bakes_in_background_and_refuses_files_from_a_newer_one(
     assert 1 <= samples(cache)[-1] < 60
     bake(path, "--out", cache.parent, "--blender", other, "--resume")
     assert cache.read_bytes() == (out / "Cloth.pc2").read_bytes()
+
+
+def make_torn_file(path):
+    import bpy
+    from test_tearing import add_torn_cloth
+
+    add_torn_cloth(end=8)
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+
+
+def look_at_torn(path):
+    import bpy
+    from test_tearing import at_frames
+
+    bpy.ops.wm.open_mainfile(filepath=path)
+    seen = at_frames(bpy.data.objects["Cloth"], (1, 8))
+    return [[len(look["positions"]) // 3 for look in seen], seen[1]["faces"], seen[1]["positions"]]
+
+
+def test_torn_cloth_is_left_with_all_its_vertices_in_a_folder_and_in_the_file(new_blender):
+    path = new_blender.folder / "torn.blend"
+    new_blender.run(make_torn_file, path=path)
+    out = new_blender.folder / "out"
+    bake(path, "--out", out)
+    lines = (out / "Cloth.obj").read_text().splitlines()
+    vertices = [line for line in lines if line.startswith("v ")]
+    faces = [
+        [int(word) - 1 for word in line.split()[1:]] for line in lines if line.startswith("f ")
+    ]
+    data = (out / "Cloth.pc2").read_bytes()
+    head = HEADER.unpack(data[: HEADER.size])
+    assert head[2] == len(vertices) == 63 + 9 and head[5] == 8
+    bake(path)
+    counts, shown, positions = new_blender.run(look_at_torn, path=path)
+    assert counts == [63, 72]
+    last = struct.unpack(f"<{3 * 72}f", data[-12 * 72 :])
+    here = [last[3 * v : 3 * v + 3] for face in faces for v in face]
+    there = [positions[3 * v : 3 * v + 3] for face in shown for v in face]
+    assert (
+        max(
+            abs(a - b)
+            for one, other in zip(here, there, strict=True)
+            for a, b in zip(one, other, strict=True)
+        )
+        < 1e-6
+    )

@@ -92,7 +92,7 @@ def seen(obj):
     found = view.heat_map_of(obj, bpy.context.evaluated_depsgraph_get(), bpy.context.scene)
     if found is None:
         return None
-    return [list(found.colors), found.low, found.high, len(found.positions), len(found.triangles)]
+    return [list(found.colors), found.low, found.high, len(found.positions), len(found.parts)]
 
 
 def of_solver(obj, name):
@@ -188,11 +188,11 @@ def drawing():
     out["nearer"] = 0.999 < gpu.loaded[0][2][2] < 1.0 and gpu.loaded[0][3][3] == 1.0
     view._draw_surfaces()
     out["kept"] = len(gpu.drawn) == 2 and gpu.made == 2
-    faces = view._faces[obj.session_uid][1]
+    faces = view._faces[obj.session_uid, "vertices"][1]
     play(4, 4)
     view._draw_surfaces()
-    out["anew"] = gpu.made == 4 and view._faces[obj.session_uid][1] is faces
-    legend.draw([view._shown[obj.session_uid][1]], Context)
+    out["anew"] = gpu.made == 4 and view._faces[obj.session_uid, "vertices"][1] is faces
+    legend.draw([view._shown[obj.session_uid][2]], Context)
     out["bar"] = gpu.drawn[-1] == ["TRI_STRIP", 66, 0]
     out["texts"] = (
         blf.texts[0] == "Cloth: Strain (%)" and blf.texts[1] == "0" and len(blf.texts) == 6
@@ -203,7 +203,7 @@ def drawing():
     obj.boucle.overlay = "contact"
     bpy.context.scene.frame_set(2)
     view._draw_surfaces()
-    legend.draw([view._shown[obj.session_uid][1]], Context)
+    legend.draw([view._shown[obj.session_uid][2]], Context)
     out["unknown"] = "Contact of this frame is not known" in blf.texts[-1] and gpu.made == 8
     obj.hide_set(True)
     count = len(gpu.drawn)

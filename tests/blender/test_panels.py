@@ -1,12 +1,21 @@
 """The panels as a tree: Blender's words, in Blender's order, closed where Blender's own cloth is."""
 
 ORDER = {
-    "BOUCLE_PT_cloth": ["Springs", "Fabric", "Shape", "Collisions", "Forces", "Solver", "Cache"],
+    "BOUCLE_PT_cloth": [
+        "Springs",
+        "Fabric",
+        "Shape",
+        "Collisions",
+        "Tearing",
+        "Forces",
+        "Solver",
+        "Cache",
+    ],
     "BOUCLE_PT_springs": ["Stiffness (N/m)", "Damping (N·s/m)", "Deformation"],
     "BOUCLE_PT_fabric": ["Stiffness (N/m)", "Bending (µN·m)", "Damping", "Deformation"],
     "BOUCLE_PT_collisions": ["Object Collisions", "Self Collisions"],
 }
-CLOSED = {"Shape", "Collisions", "Forces", "Cache", "Advanced"}
+CLOSED = {"Shape", "Collisions", "Tearing", "Forces", "Cache", "Advanced"}
 
 
 def look_at_the_panels():

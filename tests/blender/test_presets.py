@@ -128,6 +128,7 @@ def give_a_fabric():
         "denim": told(),
         "springs": native.fabric_springs("denim", 0.25),
         "model": settings.model,
+        "tears": [settings.use_tear, settings.tear_force, settings.tear_strain],
     }
     labels.append([settings.preset_title, settings.is_preset_changed])
     settings.shear = 1.0
@@ -164,7 +165,7 @@ def test_a_fabric_sets_both_models_and_the_thickness_that_nobody_chose(blender):
     denim = presets["denim"]
     told, springs = result["denim"], result["springs"]
     shared = set(denim) & set(told) - {"thickness"}
-    assert len(shared) == 11 and all(told[name] == denim[name] for name in shared)
+    assert len(shared) == 12 and all(told[name] == denim[name] for name in shared)
     assert told["use_compression"], "yarns buckle"
     assert told["thickness"] == 0.5 * denim["thickness"]
     for name in ("stretch", "bend", "damping_stretch", "damping_bend"):
@@ -172,6 +173,7 @@ def test_a_fabric_sets_both_models_and_the_thickness_that_nobody_chose(blender):
     assert told["damping_law"] == "axial" and told["stiffness_from"] == "continuum"
     assert told["damping_per_kind"] and not told["damping_ratio_per_kind"]
     assert result["model"] == "springs", "the model is the user's"
+    assert result["tears"] == [False, 0.0, 0.0], "a fabric says at which stress, not whether"
     assert abs(result["followed"] / (0.5 * presets["linen"]["thickness"]) - 1.0) < 1e-6
     assert abs(result["own"] / 0.003 - 1.0) < 1e-6, "a thickness that was chosen stays"
     assert result["mine"] == ["fabric", 77.0, 0.07, True, presets["felt"]["friction"]]

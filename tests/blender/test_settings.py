@@ -12,6 +12,8 @@ DESIGN_NAMES = {
     "compression_weft", "bend_warp", "bend_weft", "damping_ratio", "damping_ratio_per_kind",
     "damping_ratio_stretch", "damping_ratio_shear", "damping_ratio_bend", "warp", "warp_uv_map",
     "yield_curvature", "hardening", "bend_hysteresis",
+    "use_tear", "tear_stress", "tear_force", "tear_strain", "tear_noise", "tear_seed", "tear_strength_group",
+    "seam_force", "tear_opening_group", "tear_opening_frame", "use_force",
     "overlay", "overlay_range", "overlay_minimum", "overlay_maximum", "overlay_opacity",
 }  # fmt: skip
 
@@ -52,6 +54,9 @@ def test_every_setting_is_overridable_described_and_bounded(blender):
         "bend_warp_micro": "(µN·m",
         "yield_curvature": "(1/m",
         "bend_hysteresis": "(N·m/m)",
+        "tear_stress": "(N/m)",
+        "tear_force": "(N)",
+        "seam_force": "(N)",
         "damping": "(N·s/m)",
         "density": "(kg/m²)",
         "mass_per_vertex": "(kg)",
@@ -168,6 +173,8 @@ def draw_everything():
         "limiter": "none",
         "overlay": "tension",
         "overlay_range": "manual",
+        "tear_noise": 0.1,
+        "tear_opening_group": "top",
     }.items():
         setattr(obj.boucle, name, value)
     for mode in ("substeps", "time_step", "auto"):

@@ -315,18 +315,18 @@ def watch_a_bake(folder):
     bake = addon("bridge.bake").Bake([obj], scene)
     for step in bake.steps():
         if begun:
-            count, positions = view.last_frame(begun[0][obj.session_uid], known)
+            count, positions = view.last_frame(begun[0][obj.session_uid].path, known)
             seen.append([step.frame, count, None if positions is None else len(positions)])
             known = count
         step.run()
-    path = begun[0][obj.session_uid]
+    path = begun[0][obj.session_uid].path
     again = view.last_frame(path, 4)
     return {
         "seen": seen,
         "vertices": len(obj.data.vertices),
         "again": [again[0], again[1] is None],
         "missing": view.last_frame(path + ".gone", 0),
-        "left": [view._handle is None, view._paths],
+        "left": [view._handle is None, view._growing],
         "is_last": list(view.last_frame(path, 3)[1]) == [c for v in shown(obj, 4) for c in v],
     }
 

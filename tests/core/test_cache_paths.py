@@ -23,7 +23,7 @@ def test_the_files_of_a_bake_lie_together():
     files = cache_paths.files_of("/c/a.b.pc2")
     assert files == (
         "/c/a.b.pc2", "/c/a.b.json", "/c/a.b.checkpoint", "/c/a.b.strain", "/c/a.b.tension",
-        "/c/a.b.contact", "/c/a.b.intersection",
+        "/c/a.b.contact", "/c/a.b.intersection", "/c/a.b.force", "/c/a.b.tear",
     )  # fmt: skip
     assert files.previous.pc2 == "/c/a.b.previous.pc2"
 

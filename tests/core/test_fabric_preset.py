@@ -30,5 +30,5 @@ def test_the_numbers_are_told_in_one_sentence():
     said = fabric_preset.sentence(FABRICS["leather_nappa"])
     assert said == (
         "500 g/m², 0.8 mm thick; along warp and weft it stretches by 15 and 12 kN/m and bends by "
-        "24 and 20 µN·m; shear 4800 N/m"
+        "24 and 20 µN·m; shear 4800 N/m; it tears at 12 kN/m"
     )

@@ -138,3 +138,65 @@ def test_a_flag_in_a_storm_leaves_caches_of_all_its_pieces(tmp_path):
     assert samples.shape == (40, vertices, 3)
     assert vertices > 19 * 13
     assert (samples[:, np.concatenate(faces)] == corners).all()
+
+
+def test_each_corner_tells_the_force_in_the_edge_that_begins_there():
+    made = simulation()
+    for _ in range(12):
+        made.advance()
+    vertices = grid()[2]
+    force, strain, tension = (np.empty(len(vertices), np.float32) for _ in range(3))
+    made.read_corner_numbers(0, "force", force)
+    pulls = {(a, b): pull for a, b, pull in made.edge_tension(0)}
+    assert sorted({round(float(value), 4) for value in force}) == sorted(
+        {round(p, 4) for p in pulls.values()}
+    )
+    # Of faces that the tear does not touch, each side is the edge of its vertices.
+    for face in vertices.reshape(-1, 4):
+        if not any(vertex // COLUMNS == ROW for vertex in face):
+            first = 4 * int(np.flatnonzero((vertices.reshape(-1, 4) == face).all(axis=1))[0])
+            for side in range(4):
+                a, b = sorted((int(face[side]), int(face[(side + 1) % 4])))
+                assert force[first + side] == pytest.approx(pulls[a, b], abs=1e-5)
+    # The edges at the top carry the three and a half rows that still hang from them.
+    made.read_corner_numbers(0, "tension", tension)
+    weight = 0.2 * 0.1 * 0.35 * 9.81
+    assert tension[vertices // COLUMNS == ROWS - 1].max() == pytest.approx(weight, rel=0.1)
+    given = np.empty(ROWS * COLUMNS, np.float32)
+    made.read_strain(0, given)
+    made.read_corner_numbers(0, "strain", strain)
+    whole = vertices // COLUMNS != ROW
+    assert (strain[whole] == given[vertices[whole]]).all()
+    with pytest.raises(
+        boucle_core.SceneError, match='quantity = "colour"; accepted: strain, tension'
+    ):
+        made.read_corner_numbers(0, "colour", strain)
+
+
+def test_a_named_fabric_tears_at_its_own_stress_unless_the_scene_says_another():
+    stress = boucle_core.fabric_presets()["silk_chiffon"]["tear_stress"]
+
+    def torn_at(factor, **tear):
+        """Whether a sheet tears whose weight pulls at its top with a part of the fabric's stress."""
+        density = factor * stress / (9.81 * 0.1 * (ROWS - 1))
+        top = list(range(COLUMNS * (ROWS - 1), COLUMNS * ROWS))
+        fabric = {"preset": "silk_chiffon", "limiter": "none", "warp": [0, 0, 1]}
+        cloth = {
+            "name": "sheet",
+            "model": "fabric",
+            "fabric": fabric,
+            "density": density,
+            "pins": {"vertices": top},
+        }
+        scene = {
+            "cloth": [{**cloth, "tear": {"enabled": True, **tear}}],
+            "collision": {"enabled": False},
+        }
+        made = boucle_core.Simulation(json.dumps(scene), [grid()], 1)
+        for _ in range(4):
+            made.advance()
+        return bool(made.torn_edges(0))
+
+    assert torn_at(3.0) and not torn_at(0.2)
+    assert not torn_at(3.0, strain=100.0), "a threshold of the scene stands for the fabric's"
+    assert torn_at(0.2, stress=0.05 * stress)

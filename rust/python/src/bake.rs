@@ -7,8 +7,8 @@ use boucle_scene::bake::{Progress, Request};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::boundary::thread_count;
 use crate::boundary::{compute, parse_json, refuse};
-use crate::simulation::thread_count;
 
 /// Bakes a scene file into a folder and returns the report.
 #[pyfunction]

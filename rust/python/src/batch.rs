@@ -7,8 +7,8 @@ use boucle_scene::batch::{self, Progress, Request};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::boundary::thread_count;
 use crate::boundary::{compute, parse_json};
-use crate::simulation::thread_count;
 
 /// Runs many scenes and returns a row of each.
 #[pyfunction]

@@ -165,3 +165,11 @@ fn panic_message(panic: &(dyn Any + Send)) -> String {
     );
     line.replace(['\n', '\r'], " ")
 }
+
+/// The number of threads that Python gave.
+pub(crate) fn thread_count(py: Python<'_>, threads: i64) -> PyResult<usize> {
+    let refused = || refuse(py, format!("threads = {threads}; accepted: 1 to 1024, or 0"));
+    let count = usize::try_from(threads).map_err(|_| refused())?;
+    boucle_scene::limits::threads(count).map_err(|error| raise(py, &error))?;
+    Ok(count)
+}

@@ -18,6 +18,7 @@ mod bake;
 mod batch;
 mod boundary;
 mod buffers;
+mod corner_numbers;
 mod faults;
 mod geometry;
 mod interrupter;

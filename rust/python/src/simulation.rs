@@ -7,8 +7,9 @@ use boucle_scene::{Assembly, Scene};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::boundary::{compute, parse_json, raise, refuse};
+use crate::boundary::{compute, parse_json, thread_count};
 use crate::buffers;
+use crate::corner_numbers;
 use crate::interrupter::Interrupter;
 use crate::meshes::{self, MeshArrays};
 use crate::springs;
@@ -309,6 +310,18 @@ impl Simulation {
         buffers::write_rows(out, &rows)
     }
 
+    fn read_corner_numbers(
+        &mut self,
+        py: Python<'_>,
+        cloth: i64,
+        quantity: &str,
+        out: &Bound<'_, PyAny>,
+    ) -> PyResult<()> {
+        let (index, of) = (self.cloth(py, cloth)?.0, corner_numbers::reader(py, quantity)?);
+        let numbers = self.with(py, |assembly| Ok(of(&assembly.simulation, index)))?;
+        buffers::write_numbers(out, &numbers, "float32")
+    }
+
     fn vertex_origins(&self, py: Python<'_>, cloth: i64) -> PyResult<Vec<u32>> {
         let index = self.cloth(py, cloth)?.0;
         Ok(self.assembly(py)?.simulation.origins(index))
@@ -316,8 +329,7 @@ impl Simulation {
 
     fn torn_edges(&self, py: Python<'_>, cloth: i64) -> PyResult<Vec<(u32, u32)>> {
         let index = self.cloth(py, cloth)?.0;
-        let torn = self.assembly(py)?.simulation.torn_edges(index);
-        Ok(torn.into_iter().map(|[a, b]| (a, b)).collect())
+        Ok(self.assembly(py)?.simulation.torn_edges(index).into_iter().map(Into::into).collect())
     }
 
     fn edge_tension(&mut self, py: Python<'_>, cloth: i64) -> PyResult<Vec<(u32, u32, f64)>> {
@@ -384,12 +396,4 @@ impl Simulation {
     fn restore(&mut self, py: Python<'_>, checkpoint: &[u8]) -> PyResult<()> {
         self.with(py, |assembly| Ok(assembly.simulation.restore(checkpoint)?))
     }
-}
-
-/// The number of threads that Python gave.
-pub(crate) fn thread_count(py: Python<'_>, threads: i64) -> PyResult<usize> {
-    let refused = || refuse(py, format!("threads = {threads}; accepted: 1 to 1024, or 0"));
-    let count = usize::try_from(threads).map_err(|_| refused())?;
-    boucle_scene::limits::threads(count).map_err(|error| raise(py, &error))?;
-    Ok(count)
 }

@@ -236,6 +236,7 @@ fn cloth(
     let vertices = cloth.positions.len();
     let tear = description.tear.tear(
         &scene.tear,
+        description.named_fabric(),
         scene.scene.frames[0],
         vertices,
         &format!("{at}.tear"),

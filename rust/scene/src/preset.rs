@@ -46,6 +46,8 @@ pub struct FabricPreset {
     pub friction: f64,
     /// Allowed elongation, as a fraction.
     pub deformation_rate: f64,
+    /// Stress (N/m) at which it tears: its breaking force over the width of the strip, in the weaker direction.
+    pub tear_stress: f64,
     /// Damping as a part of the critical, at a wavelength of 0.1 m.
     pub damping_ratio: f64,
     /// Between what its drape coefficient (%, Cusick) is said to lie, where anybody says so.
@@ -119,7 +121,8 @@ mod tests {
             let is_cloth = (0.01..2.0).contains(&preset.density)
                 && (5e-5..2e-2).contains(&preset.thickness)
                 && (0.0..2.0).contains(&preset.friction)
-                && (0.0..1.0).contains(&preset.deformation_rate);
+                && (0.0..1.0).contains(&preset.deformation_rate)
+                && (1e2..1e5).contains(&preset.tear_stress);
             assert!(is_cloth, "{name}: {preset:?}");
             assert!(preset.source.len() > 40, "{name} has no source");
             assert!(!preset.group.is_empty() && !preset.title.is_empty(), "{name}");

@@ -4,12 +4,15 @@
 //! [tear]
 //! enabled = true
 //! force = 40.0                    # N: the tension of an edge that breaks
-//! strain = 0.5                    # or its strain, or both
+//! strain = 0.5                    # or its strain
+//! stress = 5000.0                 # N/m: or its tension over the width that it stands for, at any resolution; by default what is known
+//!                                 # of a named fabric, if neither of the three is given
 //! noise = 0.1                     # thresholds differ by up to this part from edge to edge
 //! seed = 0
 //! seam_force = 5.0                # N: seams come undone beyond
 //!
 //! [cloth.tear]
+//! start = 10                      # nothing tears before the end of this frame
 //! strength = [1.0, 0.5, 1.0]      # the part of force and strain that holds at each vertex; 1 if missing
 //! openings = [ { frame = 30, pairs = [[4, 5], [5, 6]] } ]      # edges and seams that open by themselves
 //! ```
@@ -20,6 +23,7 @@ use serde::{Deserialize, Serialize};
 use super::table;
 use crate::error::{Error, Result};
 use crate::limits;
+use crate::preset::FabricPreset;
 
 /// Largest force (N) and strain.
 const MOST: f64 = 1e12;
@@ -34,6 +38,8 @@ pub struct TearDescription {
     pub force: Option<f64>,
     /// Strain beyond which it breaks.
     pub strain: Option<f64>,
+    /// Stress (N/m) beyond which it breaks.
+    pub stress: Option<f64>,
     /// By which part thresholds differ from edge to edge, up and down; 0 if missing.
     pub noise: Option<f64>,
     /// Chooses the random numbers.
@@ -52,6 +58,8 @@ pub struct ClothTear {
     pub force: Option<f64>,
     /// Strain beyond which it breaks.
     pub strain: Option<f64>,
+    /// Stress (N/m) beyond which it breaks.
+    pub stress: Option<f64>,
     /// By which part thresholds differ from edge to edge, up and down.
     pub noise: Option<f64>,
     /// Chooses the random numbers.
@@ -63,6 +71,8 @@ pub struct ClothTear {
     /// What opens by itself.
     #[serde(deserialize_with = "table::list")]
     pub openings: Vec<OpeningDescription>,
+    /// The first frame at whose end anything tears; any if missing.
+    pub start: Option<i32>,
 }
 
 /// Edges and seams that open at the end of a frame.
@@ -77,16 +87,17 @@ pub struct OpeningDescription {
 
 impl TearDescription {
     pub(super) fn check(&self, at: &str) -> Result<()> {
-        check(at, [self.force, self.strain, self.seam_force], self.noise)
+        check(at, [self.force, self.strain, self.stress, self.seam_force], self.noise)
     }
 }
 
 impl ClothTear {
     pub(super) fn check(&self, at: &str) -> Result<()> {
-        check(at, [self.force, self.strain, self.seam_force], self.noise)
+        check(at, [self.force, self.strain, self.stress, self.seam_force], self.noise)
     }
 
-    /// As the solver takes it, for a cloth of so many vertices; nothing if it is not to tear.
+    /// As the solver takes it, for a cloth of so many vertices, and of a fabric if it is of a named one; nothing if it is not to
+    /// tear.
     ///
     /// # Errors
     /// [`Error::Input`] when it is to tear and nothing says when, there are more strengths than vertices, or something is to open
@@ -94,6 +105,7 @@ impl ClothTear {
     pub fn tear(
         &self,
         scene: &TearDescription,
+        fabric: Option<&FabricPreset>,
         first_frame: i32,
         vertices: usize,
         at: &str,
@@ -118,28 +130,36 @@ impl ClothTear {
         }
         let opening =
             |own: &OpeningDescription| Opening { frame: own.frame, pairs: own.pairs.clone() };
+        let (force, strain) = (self.force.or(scene.force), self.strain.or(scene.strain));
+        let of_fabric = fabric.map(|fabric| fabric.tear_stress);
         let tear = Tear {
-            force: self.force.or(scene.force),
-            strain: self.strain.or(scene.strain),
+            force,
+            strain,
+            stress: self
+                .stress
+                .or(scene.stress)
+                .or(of_fabric.filter(|_| force.or(strain).is_none())),
             noise: self.noise.or(scene.noise).unwrap_or(0.0),
             seed: self.seed.or(scene.seed).unwrap_or(0),
             strength,
             seam_force: self.seam_force.or(scene.seam_force),
             openings: self.openings.iter().map(opening).collect(),
+            start: self.start,
         };
-        let says_when = tear.force.or(tear.strain).or(tear.seam_force).is_some();
+        let says_when =
+            [tear.force, tear.strain, tear.stress, tear.seam_force].iter().any(Option::is_some);
         if !says_when && tear.openings.is_empty() {
             return Err(Error::input(format!(
                 "{at}.enabled = true, but nothing says when it tears; accepted: with force (N), strain, \
-                 seam_force (N) or openings"
+                 stress (N/m), seam_force (N) or openings"
             )));
         }
         Ok(Some(tear))
     }
 }
 
-fn check(at: &str, numbers: [Option<f64>; 3], noise: Option<f64>) -> Result<()> {
-    for (key, value) in ["force", "strain", "seam_force"].into_iter().zip(numbers) {
+fn check(at: &str, numbers: [Option<f64>; 4], noise: Option<f64>) -> Result<()> {
+    for (key, value) in ["force", "strain", "stress", "seam_force"].into_iter().zip(numbers) {
         let value = value.unwrap_or(0.0);
         limits::within(&format!("{at}.{key}"), value, &(0.0..=MOST), "0 to 1e12")?;
     }

@@ -245,13 +245,13 @@ impl Fabrics {
         })
     }
 
-    /// The sides of each triangle of a cloth, the smaller particle first, and the stress along them over a width as that of its
-    /// sides (N).
-    pub(crate) fn side_tensions<'a>(
+    /// The sides of each triangle of a cloth, the smaller particle first, the stress along them (N/m) and a width as that of its
+    /// sides (m).
+    pub(crate) fn side_stresses<'a>(
         &'a self,
         cloth: usize,
         state: &'a State,
-    ) -> impl Iterator<Item = ([u32; 2], f64)> + 'a {
+    ) -> impl Iterator<Item = ([u32; 2], f64, f64)> + 'a {
         self.parts[cloth].triangles.clone().flat_map(|number| {
             let one = &self.triangles[number];
             let frame = one.frame(|corner| state.position.get(corner as usize));
@@ -262,7 +262,7 @@ impl Fabrics {
                 let [w, f] = [0, 1].map(|axis| flat[j][axis] - flat[i][axis]);
                 let along = (ww * w * w + ff * f * f + 2.0 * wf * w * f) / (w * w + f * f);
                 let [a, b] = [corners[i], corners[j]];
-                ([a.min(b), a.max(b)], along * width)
+                ([a.min(b), a.max(b)], along, width)
             })
         })
     }

@@ -84,7 +84,21 @@ impl Simulation {
     /// over a width as that of the triangles beside it.
     #[must_use]
     pub fn edge_tension(&self, cloth: usize) -> Vec<([u32; 2], f64)> {
-        self.edge_loads(cloth).into_iter().map(|(ends, pull, _)| (ends, pull)).collect()
+        self.edge_loads(cloth).into_iter().map(|load| (load.ends, load.tension)).collect()
+    }
+
+    /// At each corner of a cloth's faces, the tension (N) of the edge from there to the next corner of the face, as
+    /// [`Self::edge_tension`] has it: each side of a tear has its own.
+    #[must_use]
+    pub fn corner_tension(&self, cloth: usize) -> Vec<f32> {
+        let loads = self.edge_loads(cloth);
+        let faces = self.cloths[cloth].mesh.faces();
+        let sides = faces.flat_map(|face| face.iter().zip(face.iter().cycle().skip(1)));
+        let tension = sides.map(|(&a, &b)| {
+            let place = loads.binary_search_by_key(&[a.min(b), a.max(b)], |load| load.ends);
+            place.map_or(0.0, |place| loads[place].tension as f32)
+        });
+        tension.collect()
     }
 
     /// A cloth as it was given, whole.
@@ -98,7 +112,10 @@ impl Simulation {
         let mut has_torn = false;
         let before = self.tears();
         for cloth in 0..self.cloths.len() {
-            if let Some(tear) = self.cloths[cloth].tear.clone() {
+            let tear = self.cloths[cloth].tear.clone();
+            if let Some(tear) =
+                tear.filter(|tear| tear.start.is_none_or(|start| start <= self.frame))
+            {
                 let edges = self.broken_edges(cloth, &tear);
                 let seams = self.broken_seams(cloth, &tear);
                 let Some(split) = &mut self.splits[cloth] else { continue };
@@ -154,14 +171,14 @@ impl Simulation {
 
     /// The edges that are loaded beyond what they bear.
     fn breaks(&self, cloth: usize, tear: &Tear, split: &Split) -> Vec<Break> {
-        if tear.force.is_none() && tear.strain.is_none() {
+        if !tear.breaks_edges() {
             return Vec::new();
         }
-        let loads = self.edge_loads(cloth).into_iter().filter_map(|(ends, tension, strain)| {
-            let given = ends.map(|end| split.origins()[end as usize]);
+        let loads = self.edge_loads(cloth).into_iter().filter_map(|load| {
+            let given = load.ends.map(|end| split.origins()[end as usize]);
             let edge = split.edge_between(given)?;
-            let excess = tear.excess(tear.bears(edge as usize, given), tension, strain);
-            (excess > 1.0).then_some(Break { excess, ends })
+            let excess = tear.excess(tear.bears(edge as usize, given), &load);
+            (excess > 1.0).then_some(Break { excess, ends: load.ends })
         });
         loads.collect()
     }

@@ -4,7 +4,8 @@ use super::Simulation;
 use crate::certificate::length;
 use crate::law::Spring;
 use crate::law::spring::Law;
-use crate::material::SpringKind;
+use crate::material::{SpringKind, StiffnessFrom};
+use crate::tear::Load;
 
 impl Simulation {
     /// The largest tension (N) at each vertex of a cloth, 0 where all is slack: the pull of its stretch and shear springs
@@ -55,24 +56,59 @@ impl Simulation {
         })
     }
 
-    /// The edges of a cloth's faces: their ends, tension (N) and strain. Of fabric, the tension is the largest stress along the edge of
-    /// the triangles beside it, over a width as that of their sides, if nothing else holds it.
-    pub(super) fn edge_loads(&self, cloth: usize) -> Vec<([u32; 2], f64, f64)> {
+    /// How the edges of a cloth's faces are loaded, sorted by their ends. Of fabric, the stress is the largest along the edge of the
+    /// triangles beside it, and the tension that over a width as that of their sides, if nothing else holds it.
+    pub(super) fn edge_loads(&self, cloth: usize) -> Vec<Load> {
         let base = self.bases[cloth];
         let stretch = self.pulls(cloth).filter(|(spring, _)| spring.kind == SpringKind::Stretch);
-        let mut loads: Vec<([u32; 2], f64, f64)> = stretch
-            .map(|(spring, pull)| {
+        // Stretch springs are sorted by their ends.
+        let mut loads: Vec<Load> = stretch
+            .zip(self.edge_widths(cloth))
+            .map(|((spring, pull), width)| {
                 let ratio = length(&self.state, spring.ends, base) / spring.rest_length;
-                (spring.ends, pull, ratio - 1.0)
+                Load {
+                    ends: spring.ends,
+                    tension: pull,
+                    strain: ratio - 1.0,
+                    stress: pull / width.max(f64::MIN_POSITIVE),
+                }
             })
             .collect();
-        // Stretch springs are sorted by their ends.
-        for (ends, pull) in self.system.fabrics.side_tensions(cloth, &self.state) {
+        for (ends, stress, width) in self.system.fabrics.side_stresses(cloth, &self.state) {
             let ends = ends.map(|end| end - base);
-            if let Ok(place) = loads.binary_search_by_key(&ends, |load| load.0) {
-                loads[place].1 = loads[place].1.max(pull);
+            if let Ok(place) = loads.binary_search_by_key(&ends, |load| load.ends) {
+                let load = &mut loads[place];
+                load.tension = load.tension.max(stress * width);
+                load.stress = load.stress.max(stress);
             }
         }
         loads
+    }
+
+    /// The width (m) of cloth that each stretch spring stands for, in their order: of the faces beside the edge, their area over its
+    /// length, of which each of two directions of edges has its half in quads. Springs of a membrane at a border are half as stiff as
+    /// others and stand for half as much; springs that are all as stiff stand for as much as others.
+    fn edge_widths(&self, cloth: usize) -> Vec<f64> {
+        let cloth = &self.cloths[cloth];
+        let is_alike =
+            cloth.fabric.is_none() && cloth.material.stiffness_from == StiffnessFrom::Springs;
+        let stretch = || cloth.springs.iter().filter(|spring| spring.kind == SpringKind::Stretch);
+        let edges: Vec<[u32; 2]> = stretch().map(|spring| spring.ends).collect();
+        let mut sides = vec![(0.0, 0.0); edges.len()];
+        for (number, face) in cloth.mesh.faces().enumerate() {
+            let area = cloth.mesh.vector_area(number, cloth.rest()).norm();
+            let share = area / (face.len() as f64 - 2.0);
+            for (&a, &b) in face.iter().zip(face.iter().cycle().skip(1)) {
+                if let Ok(place) = edges.binary_search(&[a.min(b), a.max(b)]) {
+                    sides[place].0 += share;
+                    sides[place].1 += 1.0;
+                }
+            }
+        }
+        let widths = stretch().zip(sides).map(|(spring, (area, count))| {
+            let whole = if is_alike { 2.0 / f64::max(count, 1.0) } else { 1.0 };
+            whole * area / spring.rest_length
+        });
+        widths.collect()
     }
 }

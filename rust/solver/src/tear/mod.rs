@@ -29,6 +29,9 @@ pub struct Tear {
     pub force: Option<f64>,
     /// Strain beyond which an edge breaks; none if `None`.
     pub strain: Option<f64>,
+    /// Stress (N/m), tension over the width that an edge stands for, beyond which it breaks; none if `None`. Unlike a force it does
+    /// not depend on how fine the mesh is, as long as the stress is smooth: at the end of a tear it is larger on finer meshes.
+    pub stress: Option<f64>,
     /// By which part of them thresholds differ from edge to edge, up and down; 0 to 1.
     pub noise: f64,
     /// Chooses the random numbers.
@@ -40,6 +43,19 @@ pub struct Tear {
     pub seam_force: Option<f64>,
     /// What opens by itself.
     pub openings: Vec<Opening>,
+    /// The first frame at whose end anything tears; any if `None`.
+    pub start: Option<i32>,
+}
+
+/// How an edge is loaded.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Load {
+    pub ends: [u32; 2],
+    /// (N)
+    pub tension: f64,
+    pub strain: f64,
+    /// (N/m)
+    pub stress: f64,
 }
 
 /// Edges or seams that open at the end of a frame.
@@ -59,13 +75,20 @@ impl Tear {
         at(a).min(at(b)) * (1.0 + self.noise * random)
     }
 
-    /// By which factor tension (N) and strain are beyond what breaks an edge that bears such a part of the thresholds.
-    pub(crate) fn excess(&self, bears: f64, tension: f64, strain: f64) -> f64 {
+    /// Whether pulled edges break at all.
+    pub(crate) fn breaks_edges(&self) -> bool {
+        self.force.or(self.strain).or(self.stress).is_some()
+    }
+
+    /// By which factor a load is beyond what breaks an edge that bears such a part of the thresholds.
+    pub(crate) fn excess(&self, bears: f64, load: &Load) -> f64 {
         let of = |value: f64, threshold: Option<f64>| match threshold {
             Some(threshold) if value > 0.0 => value / (bears * threshold).max(f64::MIN_POSITIVE),
             _ => 0.0,
         };
-        of(tension, self.force).max(of(strain, self.strain))
+        of(load.tension, self.force)
+            .max(of(load.strain, self.strain))
+            .max(of(load.stress, self.stress))
     }
 
     pub(crate) fn check(&self, cloth: &Cloth) -> Result<()> {
@@ -73,6 +96,7 @@ impl Tear {
         for (what, value) in [
             ("force (N)", self.force),
             ("strain", self.strain),
+            ("stress (N/m)", self.stress),
             ("seam_force (N)", self.seam_force),
         ] {
             at_least_zero(&format!("{at} {what}"), value.unwrap_or(0.0))?;

@@ -3,7 +3,7 @@
 use boucle_geometry::Vector;
 use boucle_solver::{
     Cloth, Collision, Fabric, Flow, IntegratorKind, Mass, Opening, Settings, Sewing, Simulation,
-    SpringMaterial, Tear, Warp, Wind, WindLaw,
+    SpringMaterial, StiffnessFrom, Tear, Warp, Wind, WindLaw,
 };
 
 use crate::sheets::{grid_mesh, in_wind, material, run, sheet};
@@ -91,6 +91,69 @@ fn fabric_under_a_growing_load_tears_at_its_force_along_its_weakest_row() {
     let torn = simulation.torn_edges(0);
     assert!(torn.iter().all(|[a, b]| a / COLUMNS == row && b / COLUMNS == row), "{torn:?}");
     assert_eq!(torn.len(), COLUMNS as usize - 1);
+}
+
+/// Hung up, a sheet tears where its weight over its width is the stress that it bears, whatever its mesh and model.
+#[test]
+fn a_sheet_tears_at_the_same_stress_at_any_resolution() {
+    let (stress, density, [width, height]) = (40.0, 0.8, [0.3, 0.6]);
+    let fabric = Fabric {
+        stretch: [4000.0; 2],
+        shear: 1000.0,
+        warp: Warp::Along(Vector::z()),
+        ..Fabric::default()
+    };
+    for cells in [3, 6, 12] {
+        let spacing = width / f64::from(cells);
+        // About half of the critical damping of a vertex that swings as the sheet does, at 29 Hz: a load that grows frame by
+        // frame, at 24 Hz, would make it ring.
+        let membrane = |from| SpringMaterial {
+            air_damping: 100.0 * spacing * spacing,
+            stiffness_from: from,
+            ..material([4000.0, 0.0, 0.0])
+        };
+        let counts = [cells + 1, 2 * cells + 1];
+        let top: Vec<u32> = (counts[0] * (counts[1] - 1)..counts[0] * counts[1]).collect();
+        let tear = Tear { stress: Some(stress), ..Tear::default() };
+        let hung = |material| {
+            let cloth = sheet(counts, spacing, &Mass::Density(density), material, &top);
+            let upright = |x: &Vector| Vector::new(x.x, 0.0, x.y);
+            let positions = cloth.positions.iter().map(upright).collect();
+            Cloth { positions, tear: Some(tear.clone()), ..cloth }
+        };
+        // What the topmost edges carry, and those triangles.
+        let below = density * (height - 0.5 * spacing);
+        let springs = membrane(StiffnessFrom::Springs);
+        let membrane = hung(membrane(StiffnessFrom::Continuum));
+        let of_fabric = hung(springs.clone()).of_fabric(fabric.clone()).expect("a fabric");
+        for (name, cloth) in
+            [("membrane", membrane), ("springs", hung(springs)), ("fabric", of_fabric)]
+        {
+            // At its default tolerance, steps of fabric leave up to a tenth of the strain beside the pins.
+            let exact = Settings { tolerance: 1e-6, ..settings(IntegratorKind::ImplicitEuler) };
+            let mut simulation = in_wind(cloth, Vec::new(), exact);
+            let g = load_until_torn(&mut simulation, 0.5);
+            let expected = stress / below;
+            println!("{name} of {cells} cells: {g} m/s2 beside {expected}");
+            assert!(
+                (g / expected - 1.0).abs() < 0.03,
+                "{name} of {cells} cells: {g} beside {expected}"
+            );
+        }
+    }
+}
+
+/// Before its time nothing tears.
+#[test]
+fn nothing_tears_before_its_first_frame() {
+    let start = settings(IntegratorKind::ImplicitEuler).first_frame + 5;
+    let tear = Tear { force: Some(0.0), start: Some(start), ..Tear::default() };
+    let cloth = hanging(&Mass::PerVertex(EACH), material([400.0, 100.0, 5.0]), tear);
+    let mut simulation = in_wind(cloth, Vec::new(), settings(IntegratorKind::ImplicitEuler));
+    run(&mut simulation, 4);
+    assert!(simulation.torn_edges(0).is_empty());
+    run(&mut simulation, 1);
+    assert!(!simulation.torn_edges(0).is_empty());
 }
 
 /// What has torn off falls as anything falls.

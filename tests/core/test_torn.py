@@ -1,0 +1,113 @@
+"""The layout of torn caches: its file, the cache in another layout and back, and what is refused."""
+
+from array import array
+from pathlib import Path
+
+import pytest
+from boucle_addon.core import pc2, points, torn
+from boucle_addon.core.refusal import Refusal
+from boucle_addon.core.torn import Layout
+
+# Three quads in a row: vertices 0 1 2 3 below, 4 5 6 7 above; the edge from 1 to 5 tears.
+CORNERS = array("i", [0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6])
+FULL = Layout(8, 12, array("i", [0, 8, 9, 4, 1, 10, 11, 5, 2, 3, 7, 6]), None)
+WHOLE = Layout(8, 8, CORNERS, array("i"))
+TORN = Layout(8, 10, array("i", [0, 1, 5, 4, 8, 2, 6, 9, 2, 3, 7, 6]), array("i", [1, 5]))
+
+
+@pytest.fixture(params=["numpy", "array"], autouse=True)
+def arrays(request, monkeypatch):
+    if request.param == "array":
+        monkeypatch.setattr(points, "numpy_module", lambda: None)
+
+
+def cache(path, layout, samples):
+    writer = pc2.Writer.create(str(path), layout.point_count, 4)
+    for vertices in samples:
+        writer.append(torn.of_vertices(array("f", vertices), layout, CORNERS))
+    writer.close()
+
+
+def lists(path):
+    count = pc2.read_header(str(path)).sample_count
+    return [list(pc2.read_sample(str(path), index)) for index in range(count)]
+
+
+REST = [float(k) for k in range(24)]
+
+
+def test_corners_go_to_points_and_back():
+    corners = array("f", [float(k) for k in range(36)])
+    assert list(FULL.spread(FULL.gather(corners))) == list(corners)
+    assert list(torn.of_vertices(array("f", REST), WHOLE, CORNERS)) == REST
+    assert list(torn.of_vertices(array("f", REST), FULL, CORNERS))[:24] == REST
+    assert not FULL.is_whole and not TORN.is_whole and WHOLE.is_whole
+
+
+def test_a_layout_comes_back_from_its_file(tmp_path):
+    path = str(tmp_path / "a.tear")
+    assert torn.read(path) is None
+    for layout in (FULL, WHOLE, TORN):
+        torn.write(path, layout)
+        found = torn.read(path)
+        assert found[:2] == layout[:2]
+        assert list(found.points) == list(layout.points)
+        assert (found.edges is None) == (layout.edges is None)
+        assert list(found.edges if found.edges is not None else ()) == list(layout.edges or ())
+    for damaged in (
+        b"",
+        b"BOUCLE TEAR 1\n",
+        b"BOUCLE TEAR 1\n{}\n",
+        b"x" * 300,
+        Path(path).read_bytes()[:-1],
+    ):
+        (tmp_path / "b.tear").write_bytes(damaged)
+        with pytest.raises(Refusal, match=r"b\.tear\" is damaged"):
+            torn.read(str(tmp_path / "b.tear"))
+
+
+def test_a_cache_is_arranged_without_loss_and_never_joined_where_it_is_apart(tmp_path):
+    path, tear = tmp_path / "a.pc2", str(tmp_path / "a.tear")
+    moved = [value + 0.1 for value in REST]
+    cache(path, FULL, [REST, moved])
+    torn.write(tear, FULL)
+    before = lists(path)
+    assert torn.arrange(str(path), tear, FULL, WHOLE)
+    assert lists(path) == [list(array("f", REST)), list(array("f", moved))]
+    assert torn.check(str(path), tear, 8, 12) == ""
+    torn.restore_corners(str(path), tear, FULL)
+    assert lists(path) == before and torn.read(tear).edges is None
+    apart = list(pc2.read_sample(str(path), 1))
+    apart[3 * 8] += 1.0  # the first face's corner at vertex 1
+    writer = pc2.Writer.reopen(str(path), 12, 2)
+    writer.append(array("f", apart))
+    writer.close()
+    assert torn.is_apart(array("f", apart), FULL, CORNERS)
+    assert not torn.is_apart(array("f", before[1]), FULL, CORNERS)
+    assert not torn.arrange(str(path), tear, FULL, WHOLE), "a vertex would be in two places"
+    assert len(lists(path)) == 3 and lists(path)[:2] == before
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a.pc2", "a.tear"]
+    assert not torn.arrange(str(path), tear, FULL, FULL._replace(edges=array("i", [1, 5]))), (
+        "nothing gained"
+    )
+    assert torn.arrange(str(path), tear, FULL, TORN)
+    assert pc2.read_header(str(path)).first_frame == 4
+    torn.restore_corners(str(path), tear, FULL)
+    assert lists(path) == [*before, apart]
+
+
+def test_caches_that_do_not_fit_say_so(tmp_path):
+    path, tear = tmp_path / "a.pc2", str(tmp_path / "a.tear")
+    assert "is missing" in torn.check(str(path), tear, 8, 12)
+    cache(path, FULL, [REST])
+    assert "holds 12 vertices and the mesh has 8" in torn.check(str(path), tear, 8, 12)
+    torn.write(tear, FULL)
+    assert torn.check(str(path), tear, 8, 12) == ""
+    assert "is of a torn cloth of 8 vertices and 12 corners" in torn.check(str(path), tear, 7, 12)
+    torn.write(tear, WHOLE)
+    assert "holds 12 vertices" in torn.check(str(path), tear, 8, 12)
+    torn.restore_corners(str(path), tear, FULL)
+    assert torn.check(str(path), tear, 8, 12) == "", "what a crash left is mended by Resume"
+    cache(path, TORN._replace(point_count=11), [REST])
+    with pytest.raises(Refusal, match="of another bake"):
+        torn.restore_corners(str(path), tear, FULL)

@@ -109,6 +109,7 @@ impl Bake {
         let beside = request.scene.parent().unwrap_or(Path::new("."));
         let build = || {
             folder::check_names(&scene)?;
+            folder::check_apart(&scene, beside, &request.out)?;
             let meshes = source::rest_meshes(&scene, beside)?;
             let colliders = source::rest_colliders(&scene, beside)?;
             let digest = digest(&scene, &meshes, &colliders, [first_kept, last]);

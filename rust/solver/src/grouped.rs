@@ -1,7 +1,7 @@
 //! Values by number, in one array.
 
 /// For each number below a count, the values that were given for it, in the order in which they came.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Grouped<T> {
     /// Where each number's values begin, and the end of the last.
     starts: Vec<u32>,

@@ -6,6 +6,7 @@ mod contact;
 mod forces;
 mod holding;
 mod interrupt;
+mod parting;
 mod placing;
 mod plan;
 mod reading;
@@ -201,8 +202,7 @@ impl Simulation {
             threads,
             interrupter,
         };
-        simulation.follow_holds();
-        simulation.follow_pins();
+        simulation.start_holds();
         simulation
     }
 
@@ -271,8 +271,9 @@ impl Simulation {
             memory.error = 0.0;
         }
         let contacts = self.contacts.count();
-        self.tear();
-        self.intersect();
+        if !self.tear() {
+            self.intersect();
+        }
         Ok(Certificate { contacts, ..self.certificate() })
     }
 

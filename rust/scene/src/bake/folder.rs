@@ -15,6 +15,9 @@ use crate::{obj, pc2};
 /// Longest cloth name that names a file (bytes).
 const MAX_NAME: usize = 100;
 
+/// The name of the report's file.
+const REPORT: &str = "report.json";
+
 /// A bake's folder, and the caches that are open in it, one for each cloth.
 pub(super) struct Folder {
     path: PathBuf,
@@ -55,10 +58,12 @@ impl Folder {
             obj::write(&mut bytes, &cloth.mesh, &cloth.positions)
                 .map_err(|error| Error::cache(&path, "written", &error))?;
             atomic::replace(&path, &bytes, Durability::Process)?;
-            if torn::tears(simulation, index) {
-                // What the end of the bake will leave.
-                forget(&self.path.join(format!("{}.pc2", cloth.name)))?;
-            }
+            // What the end of the bake will leave, or what one has left that tore.
+            forget(&if torn::tears(simulation, index) {
+                self.path.join(format!("{}.pc2", cloth.name))
+            } else {
+                torn::corners_path(&self.path, &cloth.name)
+            })?;
             let (path, point_count) = self.cache_of(assembly, index);
             self.caches.push(pc2::Writer::create(&path, point_count, first_kept)?);
         }
@@ -127,7 +132,7 @@ impl Folder {
     }
 
     pub(super) fn write_report(&self, report: &Report) -> Result<()> {
-        report.write(&self.path.join("report.json"))
+        report.write(&self.path.join(REPORT))
     }
 
     /// Writes the checkpoint, after the disk holds the caches that it goes on from.
@@ -145,6 +150,38 @@ fn forget(path: &Path) -> Result<()> {
         }
         _ => Ok(()),
     }
+}
+
+/// Refuses to write over what is read: files of the scene, whose folder is `beside`, that a bake into another would replace.
+pub(super) fn check_apart(scene: &Scene, beside: &Path, out: &Path) -> Result<()> {
+    let named = scene.cloth.iter().flat_map(|cloth| {
+        [".obj", ".pc2", &format!("{CORNERS}.pc2")].map(|ending| format!("{}{ending}", cloth.name))
+    });
+    let named = named.chain([REPORT, checkpoint::FILE_NAME].map(str::to_owned));
+    let mut written: Vec<(PathBuf, String)> = named
+        .filter_map(|name| fs::canonicalize(out.join(&name)).ok().map(|path| (path, name)))
+        .collect();
+    written.sort();
+    let cloths = scene.cloth.iter().flat_map(|cloth| {
+        let at = format!("cloth.{}", cloth.name);
+        [(format!("{at}.mesh"), &cloth.mesh), (format!("{at}.rest"), &cloth.rest)]
+    });
+    let colliders = scene.collider.iter().flat_map(|collider| {
+        let at = format!("collider.{}", collider.name);
+        [(format!("{at}.mesh"), &collider.mesh), (format!("{at}.cache"), &collider.cache)]
+    });
+    for (key, file) in cloths.chain(colliders) {
+        let Some(file) = file else { continue };
+        let Ok(path) = fs::canonicalize(beside.join(file)) else { continue };
+        if let Ok(place) = written.binary_search_by(|(own, _)| own.cmp(&path)) {
+            let name = &written[place].1;
+            let accepted = format!(
+                "a file that the bake does not write, as it does {name:?}: bake into another folder"
+            );
+            return Err(Error::refuse(&key, format!("{file:?}"), &accepted));
+        }
+    }
+    Ok(())
 }
 
 /// Refuses cloth names that cannot name a file on every system.

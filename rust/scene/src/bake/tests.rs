@@ -414,3 +414,39 @@ fn a_torn_cloth_is_left_with_all_its_vertices_and_the_same_whether_stopped_or_no
         assert_eq!(place.hashes("in_parts"), place.hashes("at_once"));
     }
 }
+
+#[test]
+fn a_bake_that_would_write_over_its_own_mesh_is_refused_and_loses_nothing() {
+    let scene = TORN.replace(
+        r#"grid = { size = [1, 1], vertices = [7, 9], plane = "xz" }"#,
+        r#"mesh = "sheet.obj""#,
+    );
+    let place = Place::new(
+        &scene.replace(r#"pins = ["top"]"#, "").split("[cloth.tear]").next().expect("a scene"),
+    );
+    let mesh = "# mine\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+    std::fs::write(place.0.path().join("sheet.obj"), mesh).expect("room");
+    let error = bake(&place.request("."), &mut |_| ControlFlow::Continue(())).expect_err("refused");
+    let message = error.to_string();
+    assert!(
+        message.contains("cloth.sheet.mesh = \"sheet.obj\"; accepted: a file that the bake"),
+        "{message}"
+    );
+    assert_eq!(place.bytes("sheet.obj"), mesh.as_bytes());
+    assert!(!place.0.path().join("report.json").exists());
+    whole(&place.request("out"));
+    assert_eq!(place.bytes("sheet.obj"), mesh.as_bytes());
+}
+
+#[test]
+fn the_corners_of_a_bake_that_tore_go_with_the_next_that_does_not() {
+    let place = Place::new(TORN);
+    whole(&place.request("out"));
+    let corners = place.0.path().join("out/sheet.corners.pc2");
+    assert!(corners.exists());
+    let changed =
+        Request { overrides: vec!["tear.enabled=false".to_owned()], ..place.request("out") };
+    whole(&changed);
+    assert!(!corners.exists());
+    assert_eq!(played(&place, "out").len(), 16);
+}

@@ -83,6 +83,8 @@ pub(crate) struct Contacts {
     pub(crate) matrix: ContactMatrix,
     /// What each contact does at the present guess.
     pressures: Vec<Pressure>,
+    /// The force (N) on particles before the cloths were torn, until the next step.
+    carried: Vec<(u32, f64)>,
     remembered: Remembered,
     /// Vertices that were cut short since they were last counted.
     clipped: u32,
@@ -108,6 +110,7 @@ impl Contacts {
             walls: Walls::default(),
             matrix: ContactMatrix::default(),
             pressures: Vec::new(),
+            carried: Vec::new(),
             remembered: Remembered::default(),
             clipped: 0,
             interrupter: interrupter.clone(),
@@ -168,7 +171,13 @@ impl Contacts {
             let shares = contact.weights.map(|weight| weight.abs() * pressure.force);
             contact.points.into_iter().zip(shares)
         });
-        points.filter(|&(point, _)| self.bodies.is_particle(point))
+        let points = points.filter(|&(point, _)| self.bodies.is_particle(point));
+        points.chain(self.carried.iter().copied())
+    }
+
+    /// Takes over the forces (N) of particles that now are others, to tell them until the next step.
+    pub(crate) fn carry(&mut self, forces: Vec<(u32, f64)>) {
+        self.carried = forces;
     }
 
     /// The particles of each edge and triangle that pass through each other.
@@ -241,6 +250,7 @@ impl Contacts {
             // A frame depends on nothing but the state at its start.
             self.near.clear();
             self.pressures.clear();
+            self.carried.clear();
         }
     }
 

@@ -54,6 +54,8 @@ pub(super) struct Face {
     pub(super) flat: [[f64; 2]; 3],
     /// The hinge at the edge from each corner to the next.
     pub(super) hinges: [Option<u32>; 3],
+    /// 1 where that hinge turns as the face is wound; -1 where the face beside it decided otherwise.
+    pub(super) signs: [f64; 3],
     /// Bending stiffness (N·m) along warp and weft, as long as friction holds.
     pub(super) bend: [f64; 2],
 }
@@ -77,11 +79,11 @@ impl Face {
     pub(super) fn curvatures(&self) -> Matrix3<f64> {
         let [a, b, c] = self.flat;
         let area = self.area();
-        let curvatures = [(a, b), (b, c), (c, a)].map(|(from, to)| {
+        let curvatures = [(a, b, 0), (b, c, 1), (c, a, 2)].map(|(from, to, side)| {
             let [w, f] = [to[0] - from[0], to[1] - from[1]];
             let length = w.hypot(f);
             // The normal of the edge is (f, -w)/length.
-            Vector3::new(f * f, w * w, -2.0 * f * w) / (length * area)
+            self.signs[side] * Vector3::new(f * f, w * w, -2.0 * f * w) / (length * area)
         });
         Matrix3::from_columns(&curvatures)
     }

@@ -51,13 +51,15 @@ impl Elements {
         };
         let triangles: Vec<_> = mapped_triangles(mesh, &fabric.warp).collect();
         let corners: Vec<[u32; 3]> = triangles.iter().map(|(corners, _)| *corners).collect();
-        for (place, number) in packs::order(&corners).into_iter().enumerate() {
+        let order = packs::order(&corners);
+        for (place, &number) in order.iter().enumerate() {
             let (corners, map) = triangles[number as usize];
             let number = (first + place) as u32;
             let at = corners.map(|corner| positions[corner as usize]);
             let flat = flattened(at, warp_of(at, &fabric.warp, map));
             self.triangles.push(Triangle::new(corners.map(|corner| base + corner), flat, law));
-            self.faces.push(Face { flat, hinges: [None; 3], bend: fabric.holding_bend() });
+            let bend = fabric.holding_bend();
+            self.faces.push(Face { flat, hinges: [None; 3], signs: [1.0; 3], bend });
             let pairs = [0, 1, 2].map(|i| {
                 let [a, b] = [corners[i], corners[(i + 1) % 3]];
                 [a.min(b), a.max(b)]
@@ -69,8 +71,17 @@ impl Elements {
         let mut hinges = Vec::new();
         for same in sides.chunk_by(|a, b| a.0 == b.0) {
             // An edge of three faces or more has no angle: it is free to fold.
-            let [(_, one, i), (_, other, j)] = *same else { continue };
+            let [(_, mut one, mut i), (_, mut other, mut j)] = *same else { continue };
+            let given = |number: u32| order[number as usize - first];
             let own = |number: u32| self.triangles[number as usize].corners;
+            let is_wound_alike = own(one)[i] != own(other)[j];
+            if !is_wound_alike {
+                // The first face of the mesh says which way is up, however many pieces it is in.
+                if given(one) > given(other) {
+                    ((one, i), (other, j)) = ((other, j), (one, i));
+                }
+                self.faces[other as usize].signs[j] = -1.0;
+            }
             let [a, b, left] = [0, 1, 2].map(|k| own(one)[(i + k) % 3]);
             hinges.push(([a, b, left, own(other)[(j + 2) % 3]], [(one, i), (other, j)]));
         }

@@ -68,6 +68,8 @@ pub(crate) struct Fabrics {
     hinges: Vec<Hinge>,
     /// What belongs to each cloth.
     parts: Vec<Part>,
+    /// Faces that do not bend, as all their corners are pinned.
+    is_rigid: Vec<bool>,
     compliance: Compliance,
     couplings: Couplings,
     yielding: Yielding,
@@ -125,6 +127,7 @@ impl Fabrics {
             hinge_packs_of: reaching(chunks, in_hinge_packs),
             laws,
             bend_times,
+            is_rigid: vec![false; faces.len()],
             compliance,
             couplings,
             yielding,
@@ -145,12 +148,17 @@ impl Fabrics {
 
     /// Takes up which particles are pinned: a face between three of them does not bend.
     pub(crate) fn follow_pins(&mut self, is_pinned: impl Fn(usize) -> bool) {
-        let is_rigid = |face: usize| {
-            self.triangles[face].corners.iter().all(|&corner| is_pinned(corner as usize))
-        };
-        self.compliance = Compliance::new(self.hinges.len(), &self.faces, is_rigid);
+        let is_rigid =
+            |one: &Triangle| one.corners.iter().all(|&corner| is_pinned(corner as usize));
+        let is_rigid: Vec<bool> = self.triangles.iter().map(is_rigid).collect();
+        if is_rigid == self.is_rigid {
+            return;
+        }
+        self.is_rigid = is_rigid;
+        self.compliance =
+            Compliance::new(self.hinges.len(), &self.faces, |face| self.is_rigid[face]);
         self.couplings.follow(&self.hinges, &self.compliance, &self.bend_times);
-        self.yielding.follow_pins(is_rigid);
+        self.yielding.follow_pins(|face| self.is_rigid[face]);
         self.lay_creases();
     }
 

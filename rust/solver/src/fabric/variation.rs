@@ -50,23 +50,22 @@ pub(super) fn entries(
             }
         }
     }
-    let bending = |number: usize| {
-        let face = &faces[number];
-        compliances[number].map(|compliance| Bending {
+    let bending = |(face, compliance): (&Face, &Option<Matrix3<f64>>)| {
+        compliance.map(|compliance| Bending {
             curvatures: face.curvatures() * compliance,
             hinges: face.hinges,
             stiffness: components(face.bend),
             area: face.area(),
         })
     };
+    let bending: Vec<Option<Bending>> = faces.iter().zip(compliances).map(bending).collect();
     for both in &sides {
         let [one, other] = both[..] else { continue };
         for (own, next) in [(one, other), (other, one)] {
-            if let (Some(a), Some(b)) = (bending(own.0), bending(next.0)) {
-                let turn =
-                    turned(direction(&faces[own.0], own.1), direction(&faces[next.0], next.1));
-                add(&mut rows, &a, &b, &turn);
-                stiffest = stiffest.max(stiffer(&a, &b, &turn));
+            if let (Some(a), Some(b)) = (&bending[own.0], &bending[next.0]) {
+                let turn = seen_from(own, next, faces);
+                add(&mut rows, a, b, &turn);
+                stiffest = stiffest.max(stiffer(a, b, &turn));
             }
         }
     }
@@ -119,6 +118,17 @@ fn direction(face: &Face, side: usize) -> [f64; 2] {
     let [w, f] = [to[0] - from[0], to[1] - from[1]];
     let length = w.hypot(f);
     [w / length, f / length]
+}
+
+/// What turns the curvatures of a face to the yarns and the side of another, given faces and their sides at the hinge between. A
+/// face that is wound the other way is looked at from its back: its weft runs the other way, and what is up for it is down.
+fn seen_from(own: (usize, usize), next: (usize, usize), faces: &[Face]) -> Matrix3<f64> {
+    let [one, other] = [own, next].map(|(face, side)| direction(&faces[face], side));
+    if faces[own.0].signs[own.1] * faces[next.0].signs[next.1] > 0.0 {
+        return turned(one, other);
+    }
+    // From there both go the same way along their edge.
+    turned(one, [-other[0], other[1]]) * Matrix3::from_diagonal(&Vector3::new(-1.0, -1.0, 1.0))
 }
 
 /// What turns the curvatures `(K_ww, K_ff, 2 K_wf)` of a face to the yarns of another, given the way along their common edge in

@@ -35,8 +35,9 @@ fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
 
 impl Simulation {
     /// Goes on with other cloths in the place of its own, given of each of their particles the one that it has been until now.
-    /// Vertices keep their numbers; new ones come after them.
-    pub(super) fn become_cloths(&mut self, cloths: Vec<Cloth>, from: &[u32]) {
+    /// Vertices keep their numbers; new ones come after them. Intersections are then to be counted. Returns what it was, but for
+    /// where it is torn.
+    pub(super) fn become_cloths(&mut self, cloths: Vec<Cloth>, from: &[u32]) -> Self {
         let saved = self.saved();
         let surroundings = (self.colliders.clone(), self.winds.clone());
         let pool = (Arc::clone(&self.threads), self.interrupter.clone());
@@ -48,7 +49,21 @@ impl Simulation {
         next.take(carried, shape);
         (next.clipped, next.iterations_taken) = (self.clipped, self.iterations_taken);
         next.accuracy = self.accuracy;
-        *self = next;
+        next.contacts.carry(self.forces_carried(&next, from));
+        std::mem::replace(self, next)
+    }
+
+    /// The forces (N) with which contacts press the next particles: those of what they were, shared by mass.
+    fn forces_carried(&self, next: &Self, from: &[u32]) -> Vec<(u32, f64)> {
+        let mut forces = vec![0.0; self.state.len()];
+        for (particle, force) in self.contacts.pressures() {
+            forces[particle as usize] += force;
+        }
+        let parts =
+            from.iter().zip(&next.system.masses).zip(0..).map(|((&old, mass), particle)| {
+                (particle, forces[old as usize] * (mass / self.system.masses[old as usize]))
+            });
+        parts.filter(|(_, force)| *force > 0.0).collect()
     }
 
     /// A checkpoint of these cloths as one of the next.

@@ -121,6 +121,14 @@ impl Simulation {
         self.system.goals.end_frame();
     }
 
+    /// Holds what is held from the first.
+    pub(super) fn start_holds(&mut self) {
+        self.gather_goals();
+        let Self { pins, system, .. } = self;
+        pins.particles().for_each(|particle| system.set_pinned(particle as usize, true));
+        self.follow_pins();
+    }
+
     /// Rebuilds what depends on what is held and how firmly, as far as that has changed.
     pub(super) fn follow_holds(&mut self) {
         let before = std::mem::take(&mut self.system.goals);

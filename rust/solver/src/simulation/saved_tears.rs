@@ -22,7 +22,7 @@ impl Simulation {
         }
         self.splits = self.splits_of(tears)?;
         let (cloths, from) = self.pieces();
-        self.become_cloths(cloths, &from);
+        drop(self.become_cloths(cloths, &from));
         Some(())
     }
 

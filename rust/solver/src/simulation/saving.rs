@@ -67,10 +67,11 @@ impl Simulation {
             return Err(damaged);
         }
         self.take(checkpoint, shape);
+        self.intersect();
         Ok(())
     }
 
-    /// Takes up a checkpoint that fits.
+    /// Takes up a checkpoint that fits; intersections are then to be counted.
     pub(super) fn take(&mut self, checkpoint: Checkpoint, shape: SavedShape) {
         self.pins.restore(&checkpoint.pins, &checkpoint.pin_stiffness);
         if let (Some(memory), Some(restored)) = (self.method.memory_mut(), checkpoint.memory) {
@@ -95,7 +96,6 @@ impl Simulation {
         self.follow_holds();
         self.take_shape(shape);
         self.method.follow_pins(&self.system);
-        self.intersect();
     }
 
     /// Whether a checkpoint holds as much of everything as there is here; its shape is looked at when it is read.

@@ -3,40 +3,25 @@
 use boucle_geometry::Vector;
 
 use super::Simulation;
+use super::parting::ATTEMPTS;
 use crate::cloth::{Cloth, placed};
 use crate::material::SpringKind;
-use crate::state::State;
 use crate::tear::{Fan, Split, Tear};
 
-/// By how far (m) both sides of a new tear are moved back from it, so that they are apart; and the most, as a part of the way to
-/// the middle of their faces.
-const APART: f64 = 5e-5;
-const MOST_APART: f64 = 0.02;
+/// How often tears are tried that find no room, each time without those that are stuck.
+const ROUNDS: usize = 4;
 
-/// How many other ways apart are tried where the first leads through something.
-const ATTEMPTS: usize = 5;
-
-/// A piece of a vertex that has just parted.
-struct Parted {
-    particle: usize,
-    /// The particles of its faces.
-    around: Vec<u32>,
-    /// Back from the tear, and away from it to its side of the cloth (m).
-    inward: Vector,
-    across: Vector,
+/// What of a cloth is to part: edges by number as given, with their ends, and seams.
+#[derive(Default)]
+struct Breaking {
+    edges: Vec<(u32, [u32; 2])>,
+    seams: Vec<u32>,
 }
 
-impl Parted {
-    /// By how much (m) it moves in each attempt.
-    fn way(&self, attempt: usize) -> Vector {
-        match attempt {
-            0 => self.inward,
-            1 => 0.1 * self.inward,
-            2 => 0.1 * self.inward + self.across,
-            3 => 0.1 * self.inward - self.across,
-            4 => 0.01 * self.across,
-            _ => -0.01 * self.across,
-        }
+impl Breaking {
+    /// Leaves out the edges at some vertices as given, which are sorted.
+    fn wait(&mut self, stuck: &[u32]) {
+        self.edges.retain(|(_, ends)| ends.iter().all(|end| stuck.binary_search(end).is_err()));
     }
 }
 
@@ -107,38 +92,54 @@ impl Simulation {
         self.splits[cloth].as_ref().map_or(&self.cloths[cloth], |split| split.given())
     }
 
-    /// Tears what must tear at the end of a frame. Where crumpled cloth leaves no room for two sides, it waits for the next.
-    pub(super) fn tear(&mut self) {
-        let mut has_torn = false;
-        let before = self.tears();
-        for cloth in 0..self.cloths.len() {
-            let tear = self.cloths[cloth].tear.clone();
-            if let Some(tear) =
-                tear.filter(|tear| tear.start.is_none_or(|start| start <= self.frame))
-            {
-                let edges = self.broken_edges(cloth, &tear);
-                let seams = self.broken_seams(cloth, &tear);
-                let Some(split) = &mut self.splits[cloth] else { continue };
-                for edge in edges {
-                    has_torn |= split.tear(edge);
-                }
-                for seam in seams {
-                    split.undo(seam);
-                    has_torn = true;
-                }
+    /// Tears what must tear at the end of a frame, and says whether anything has; intersections are then counted. What has no room
+    /// for two sides in crumpled cloth waits for the next frame.
+    pub(super) fn tear(&mut self) -> bool {
+        let mut breaking: Vec<Breaking> =
+            (0..self.cloths.len()).map(|cloth| self.breaking(cloth)).collect();
+        for _ in 0..ROUNDS {
+            let splits = self.splits.clone();
+            if !self.split(&breaking) {
+                return false;
+            }
+            let (whole, stuck) = self.follow_tears();
+            let Some(stuck) = stuck else {
+                self.good.clone_from(&self.state);
+                self.good_memory = self.method.memory().cloned();
+                return true;
+            };
+            *self = Self { splits, ..whole };
+            for (breaking, stuck) in breaking.iter_mut().zip(&stuck) {
+                breaking.wait(stuck);
             }
         }
-        if !has_torn {
-            return;
+        false
+    }
+
+    /// What of a cloth is to part.
+    fn breaking(&self, cloth: usize) -> Breaking {
+        let tear = self.cloths[cloth].tear.as_ref();
+        let begun = tear.filter(|tear| tear.start.is_none_or(|start| start <= self.frame));
+        let (Some(tear), Some(split)) = (begun, &self.splits[cloth]) else {
+            return Breaking::default();
+        };
+        let edges = self.broken_edges(cloth, tear);
+        let edges = edges.into_iter().map(|edge| (edge, split.ends(edge))).collect();
+        Breaking { edges, seams: self.broken_seams(cloth, tear) }
+    }
+
+    /// Splits cloths, and says whether that changes any.
+    fn split(&mut self, breaking: &[Breaking]) -> bool {
+        let mut has_torn = false;
+        for (split, Breaking { edges, seams }) in self.splits.iter_mut().zip(breaking) {
+            let Some(split) = split else { continue };
+            for &(edge, _) in edges {
+                has_torn |= split.tear(edge);
+            }
+            seams.iter().for_each(|&seam| split.undo(seam));
+            has_torn |= !seams.is_empty();
         }
-        let (saved, shape) = (self.saved(), self.saved_shape());
-        let told = (self.clipped, self.iterations_taken);
-        if !self.follow_tears() && self.tear_alike(&before).is_some() {
-            self.take(saved, shape);
-            (self.clipped, self.iterations_taken) = told;
-        }
-        self.good.clone_from(&self.state);
-        self.good_memory = self.method.memory().cloned();
+        has_torn
     }
 
     /// The edges to tear, by number as given: of those that are pulled too hard, the hardest pulled first, one in any
@@ -234,33 +235,30 @@ impl Simulation {
         numbers.map(|number| number as u32).collect()
     }
 
-    /// Goes on with the cloths as they are torn now, and says whether they pass through nothing that they did not before.
-    fn follow_tears(&mut self) -> bool {
+    /// Goes on with the cloths as they are torn now. Returns what it was; and where they pass through something that they did not
+    /// pass through before: of each cloth, the vertices as given.
+    fn follow_tears(&mut self) -> (Self, Option<Vec<Vec<u32>>>) {
         let (cloths, from) = self.pieces();
         let before: Vec<usize> = self.cloths.iter().map(|cloth| cloth.positions.len()).collect();
         let was_tangled = self.intersections.is_some_and(|count| count > 0);
-        self.become_cloths(cloths, &from);
-        let mut parted: Vec<Parted> = before
-            .into_iter()
-            .enumerate()
-            .flat_map(|(cloth, before)| self.parted(cloth, before))
-            .collect();
-        self.shift(&parted, |one| one.way(0));
-        self.intersect();
-        // Crumpled cloth may have no room there, but elsewhere.
-        for attempt in 1..=ATTEMPTS {
-            if parted.is_empty() || was_tangled || self.intersections.is_none_or(|count| count == 0)
-            {
-                break;
-            }
-            let stuck: Vec<u32> =
-                (0..self.cloths.len()).flat_map(|cloth| self.stuck(cloth)).collect();
-            parted
-                .retain(|one| one.around.iter().any(|vertex| stuck.binary_search(vertex).is_ok()));
-            self.shift(&parted, |one| one.way(attempt) - one.way(attempt - 1));
-            self.intersect();
+        let whole = self.become_cloths(cloths, &from);
+        let parted = before.into_iter().enumerate();
+        let parted = parted.flat_map(|(cloth, before)| self.parted(cloth, before)).collect();
+        let is_free = self.draw_apart(parted, if was_tangled { 0 } else { ATTEMPTS });
+        if was_tangled || is_free {
+            return (whole, None);
         }
-        was_tangled || self.intersections.is_none_or(|count| count == 0)
+        let stuck = (0..self.cloths.len()).map(|cloth| {
+            let mut stuck = self.stuck(cloth);
+            for particle in &mut stuck {
+                let vertex = *particle - self.bases[cloth];
+                *particle = self.cloths[cloth].as_given(vertex).unwrap_or(vertex);
+            }
+            stuck.sort_unstable();
+            stuck
+        });
+        let stuck = stuck.collect();
+        (whole, Some(stuck))
     }
 
     /// The cloths as they are torn, and of each of their particles the one that it has been until now.
@@ -293,71 +291,5 @@ impl Simulation {
         }
         self.seams.put_given(number, &mut cloth);
         cloth
-    }
-
-    /// What has just parted: vertices beyond so many, and those that they were one with.
-    fn parted(&self, cloth: usize, before: usize) -> Vec<Parted> {
-        let (own, base) = (&self.cloths[cloth], self.bases[cloth]);
-        let count = own.positions.len();
-        let Some(split) = self.splits[cloth].as_ref().filter(|_| count > before) else {
-            return Vec::new();
-        };
-        let mut is_new = vec![false; split.origins().len()];
-        split.origins()[before..].iter().for_each(|origin| is_new[*origin as usize] = true);
-        let places = self.positions(cloth);
-        let mut sums = vec![(Vector::zeros(), 0.0, Vec::new()); count];
-        let mut normals = vec![Vector::zeros(); count];
-        for (number, face) in own.mesh.faces().enumerate() {
-            let middle: Vector = face.iter().map(|&vertex| places[vertex as usize]).sum();
-            let normal = own.mesh.vector_area(number, &places);
-            for &vertex in face {
-                let (sum, number, around) = &mut sums[vertex as usize];
-                *sum += middle / face.len() as f64;
-                *number += 1.0;
-                around.extend(face.iter().map(|&vertex| base + vertex));
-                normals[split.origins()[vertex as usize] as usize] += normal;
-            }
-        }
-        let moves = (0..count).filter(|&vertex| {
-            let particle = base as usize + vertex;
-            is_new[split.origins()[vertex] as usize] && !self.system.is_pinned(particle)
-        });
-        let parted = moves.map(|vertex| {
-            let origin = split.origins()[vertex] as usize;
-            let (sum, number, around) = &sums[vertex];
-            let inward = sum / f64::max(*number, 1.0) - places[vertex];
-            let size = APART.min(MOST_APART * inward.norm());
-            let side = if vertex == origin { 1.0 } else { -1.0 };
-            Parted {
-                particle: base as usize + vertex,
-                around: around.clone(),
-                inward: size * inward.try_normalize(0.0).unwrap_or_else(Vector::zeros),
-                across: side
-                    * size
-                    * normals[origin].try_normalize(0.0).unwrap_or_else(Vector::zeros),
-            }
-        });
-        parted.collect()
-    }
-
-    /// The particles of a cloth at which things pass through each other, in order.
-    fn stuck(&self, cloth: usize) -> Vec<u32> {
-        let counts = self.vertex_intersections(cloth);
-        let stuck = (self.bases[cloth]..).zip(counts).filter(|(_, count)| *count > 0.0);
-        stuck.map(|(particle, _)| particle).collect()
-    }
-
-    /// Moves what has parted (m), as if it had always been there.
-    fn shift(&mut self, parted: &[Parted], way: impl Fn(&Parted) -> Vector) {
-        let shift = |state: &mut State| {
-            for one in parted {
-                let moved = state.position.get(one.particle) + way(one);
-                state.position.set(one.particle, &moved);
-            }
-        };
-        shift(&mut self.state);
-        if let Some(memory) = self.method.memory_mut() {
-            shift(&mut memory.before);
-        }
     }
 }

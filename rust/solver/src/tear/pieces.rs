@@ -77,7 +77,7 @@ impl Split {
     }
 
     fn pins(&self) -> (Vec<u32>, Vec<f64>) {
-        let Cloth { pins, pin_weights, positions, .. } = &self.given;
+        let Cloth { pins, pin_weights, positions, .. } = &*self.given;
         let mut weight_of = vec![None; positions.len()];
         for (i, &pin) in pins.iter().enumerate() {
             weight_of[pin as usize] = Some(pin_weights.get(i).copied().unwrap_or(1.0));

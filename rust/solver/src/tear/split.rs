@@ -1,5 +1,7 @@
 //! A cloth as it was given, and where it is torn.
 
+use std::sync::Arc;
+
 use boucle_geometry::Mesh;
 
 use crate::cloth::Cloth;
@@ -9,9 +11,9 @@ use crate::grouped::Grouped;
 ///
 /// A vertex keeps its number as long as there is a face at it: that with the first of its corners. The other sides of a tear
 /// get the next numbers, in the order in which they part.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Split {
-    pub(super) given: Cloth,
+    pub(super) given: Arc<Cloth>,
     /// Of the mesh as given, sorted.
     pub(super) edges: Vec<[u32; 2]>,
     /// Of each corner, the edge to the next corner of its face, and the corner before it.
@@ -65,7 +67,7 @@ impl Split {
             edges,
             sides,
             before,
-            given,
+            given: Arc::new(given),
         }
     }
 
@@ -98,6 +100,11 @@ impl Split {
     pub(crate) fn edge_between(&self, [a, b]: [u32; 2]) -> Option<u32> {
         let place = self.edges.binary_search(&[a.min(b), a.max(b)]);
         place.ok().map(|place| place as u32)
+    }
+
+    /// The ends of an edge as given.
+    pub(crate) fn ends(&self, edge: u32) -> [u32; 2] {
+        self.edges[edge as usize]
     }
 
     /// Whether an edge is not torn.
@@ -155,23 +162,20 @@ impl Split {
         if self.is_whole[vertex as usize] {
             return;
         }
-        let corners: Vec<u32> = self.corners_of.of(vertex as usize).to_vec();
-        let mut present: Vec<u32> = corners.iter().map(|&c| self.vertex_of[c as usize]).collect();
-        present.sort_unstable();
-        present.dedup();
-        for own in present {
-            let here = corners.iter().copied().filter(|&c| self.vertex_of[c as usize] == own);
-            let here: Vec<u32> = here.collect();
-            let sides = self.sides_at(&here);
-            for (i, &corner) in here.iter().enumerate() {
-                if sides[i] == sides[0] {
+        let corners = self.corners_of.of(vertex as usize);
+        let mut corners: Vec<(u32, u32)> =
+            corners.iter().map(|&corner| (self.vertex_of[corner as usize], corner)).collect();
+        corners.sort_unstable();
+        for here in corners.chunk_by(|a, b| a.0 == b.0) {
+            let here: Vec<u32> = here.iter().map(|(_, corner)| *corner).collect();
+            for (i, first) in self.sides_at(&here).into_iter().enumerate() {
+                if first == 0 {
                     continue;
                 }
-                let first = sides.iter().position(|side| *side == sides[i]).unwrap_or(i);
                 if first == i {
                     self.origins.push(vertex);
                 }
-                self.vertex_of[corner as usize] = if first == i {
+                self.vertex_of[here[i] as usize] = if first == i {
                     self.origins.len() as u32 - 1
                 } else {
                     self.vertex_of[here[first] as usize]
@@ -196,15 +200,24 @@ impl Split {
 
     /// For each corner, the first that it is joined to by edges that hold.
     fn joined(&self, corners: &[u32], holds: impl Fn(u32) -> bool) -> Vec<usize> {
-        let mut first: Vec<usize> = (0..corners.len()).collect();
-        for (i, &one) in corners.iter().enumerate() {
-            for (j, &other) in corners.iter().enumerate().take(i) {
-                let others = self.edges_at(other);
-                let is_joined =
-                    self.edges_at(one).iter().any(|edge| others.contains(edge) && holds(*edge));
-                let (low, high) = (first[i].min(first[j]), first[i].max(first[j]));
-                if is_joined && low != high {
-                    first.iter_mut().filter(|of| **of == high).for_each(|of| *of = low);
+        let places = (0..).zip(corners);
+        let mut edges: Vec<(u32, usize)> = places
+            .flat_map(|(place, &corner)| self.edges_at(corner).map(|edge| (edge, place)))
+            .filter(|(edge, _)| holds(*edge))
+            .collect();
+        edges.sort_unstable();
+        let beside = |edge: u32| {
+            let start = edges.partition_point(|(other, _)| *other < edge);
+            edges[start..].iter().take_while(move |(other, _)| *other == edge)
+        };
+        let mut first = vec![usize::MAX; corners.len()];
+        for start in 0..corners.len() {
+            let mut open = vec![start];
+            while let Some(place) = open.pop() {
+                if first[place] == usize::MAX {
+                    first[place] = start;
+                    let own = self.edges_at(corners[place]);
+                    open.extend(own.into_iter().flat_map(beside).map(|(_, place)| *place));
                 }
             }
         }

@@ -156,3 +156,61 @@ fn what_a_cloth_cannot_tear_by_is_refused() {
     assert!(message(Tear { openings, ..Tear::default() }).contains("vertices 0 and 8"));
     with(Tear { force: Some(0.0), noise: 1.0, ..Tear::default() }).expect("accepted");
 }
+
+/// Three wings that meet in the edges from 0 to 1 and from 1 to 2.
+fn joint() -> Cloth {
+    let wings = [[3, 4, 5], [6, 7, 8], [9, 10, 11]];
+    let faces: Vec<[u32; 4]> =
+        wings.iter().flat_map(|w| [[0, 1, w[1], w[0]], [1, 2, w[2], w[1]]]).collect();
+    let mesh = Mesh::from_faces(12, &faces).expect("quads");
+    let line = (0..3).map(|i| Vector::new(f64::from(i), 0.0, 0.0));
+    let out = [Vector::y(), -Vector::y(), Vector::z()];
+    let ends =
+        out.into_iter().flat_map(|way| (0..3).map(move |i| Vector::x() * f64::from(i) + way));
+    let positions = line.chain(ends).collect();
+    let (mass, material) = (Mass::Density(0.2), SpringMaterial::default());
+    Cloth::from_mesh("joint", mesh, positions, &mass, material, Vec::new()).expect("a cloth")
+}
+
+#[test]
+fn a_wing_parts_from_the_edges_that_three_faces_share() {
+    let cloth = joint();
+    let place = |vertex: u32| cloth.positions[vertex as usize];
+    let mut split = Split::new(cloth.clone());
+    let fan = Fan::around(&split, split.corner_between(1, 10).expect("a corner"));
+    let mut spokes = fan.across(&place(1), 10, place).expect("a way across");
+    spokes.sort_by_key(|(_, end)| *end);
+    assert_eq!(spokes.iter().map(|(_, end)| *end).collect::<Vec<_>>(), [0, 2]);
+    for (edge, _) in spokes {
+        split.tear(edge);
+    }
+    // Each wing has its own vertices now, in the middle and at both ends.
+    assert_eq!(split.origins()[12..], [0, 0, 1, 1, 2, 2]);
+    split.cloth().check().expect("a cloth that can be simulated");
+}
+
+/// A disk of very many triangles around one vertex: linear work for each tear.
+#[test]
+fn a_vertex_of_a_thousand_faces_parts_into_as_many() {
+    let count = 1000;
+    let faces: Vec<[u32; 3]> = (0..count).map(|i| [0, 1 + i, 1 + (i + 1) % count]).collect();
+    let mesh = Mesh::from_faces(count as usize + 1, &faces).expect("a disk");
+    let rim =
+        (0..count).map(|i| (f64::from(i) * std::f64::consts::TAU / f64::from(count)).sin_cos());
+    let places: Vec<Vector> =
+        std::iter::once(Vector::zeros()).chain(rim.map(|(y, x)| Vector::new(x, y, 0.0))).collect();
+    let (mass, material) = (Mass::Density(0.2), SpringMaterial::default());
+    let cloth = Cloth::from_mesh("disk", mesh, places.clone(), &mass, material, Vec::new());
+    let mut split = Split::new(cloth.expect("a cloth"));
+    let fan = Fan::around(&split, split.corner_between(0, 1).expect("a corner"));
+    let across = fan.across(&Vector::zeros(), 1, |vertex| places[vertex as usize]);
+    let mut ends: Vec<u32> = across.expect("a way").into_iter().map(|(_, end)| end).collect();
+    ends.sort_unstable();
+    assert_eq!(ends, [251, 751]);
+    for rim in 1..=count {
+        let edge = split.edge_between([0, rim]).expect("a spoke");
+        assert!(split.tear(edge));
+    }
+    assert_eq!(split.origins().iter().filter(|origin| **origin == 0).count(), count as usize);
+    assert_eq!(split.origins().len(), 3 * count as usize);
+}

@@ -211,3 +211,80 @@ fn fabric_moves_by_the_same_bits_on_any_number_of_threads() {
     let one = hash(1);
     assert!([2, 3, 4].into_iter().all(|threads| hash(threads) == one));
 }
+
+/// Triangles, some of which are wound the other way.
+fn some_turned(mesh: &Mesh, seed: usize) -> Mesh {
+    let faces: Vec<Vec<u32>> = mesh
+        .faces()
+        .enumerate()
+        .map(|(i, f)| if scattered(i + seed) > 0.0 { vec![f[0], f[2], f[1]] } else { f.to_vec() })
+        .collect();
+    Mesh::from_faces(mesh.vertex_count(), &faces).expect("the same faces")
+}
+
+/// The forces (N) of a fabric, bent and stretched by chance, which has a shape of its own at rest and yields.
+fn forces_of(mesh: Mesh, rest: &[Vector]) -> Vec<Vector> {
+    let fabric = Fabric {
+        bend: [2e-3, 1e-3],
+        yield_curvature: Some(3.0),
+        bend_hysteresis: 1e-3,
+        warp: Warp::Along(Vector::new(1.0, 0.3, 0.2)),
+        ..Fabric::default()
+    };
+    let cloth = of_fabric(mesh, rest.to_vec(), &Mass::Density(0.2), fabric);
+    let bent: Vec<Vector> = rest
+        .iter()
+        .map(|x| {
+            x + Vector::new(0.0, 0.02 * (9.0 * x.x).sin(), 0.05 * (20.0 * x.x + 7.0 * x.y).sin())
+        })
+        .collect();
+    crate::sheets::forces_at(&cloth, &[], Vector::zeros(), &crate::sheets::shaken(&bent, 1e-3))
+}
+
+fn assert_same_forces(a: &[Vector], b: &[Vector]) {
+    let size = a.iter().map(|force| force.norm()).fold(0.0, f64::max);
+    let error = crate::sheets::farthest(a, b);
+    assert!(size > 1e-3 && error < 1e-8 * size, "{error:e} of {size:e} N");
+}
+
+/// Which side of a face is up is a matter of where it is looked at from.
+#[test]
+fn fabric_bends_alike_whichever_way_its_faces_are_wound() {
+    let (mesh, positions) = strip(12, 6, 0.05, 0.3);
+    let curved: Vec<Vector> =
+        positions.iter().map(|x| x + Vector::z() * 0.05 * (10.0 * x.x).sin()).collect();
+    for rest in [&positions, &curved] {
+        let forces = forces_of(mesh.clone(), rest);
+        for seed in [0, 1000, 2000] {
+            assert_same_forces(&forces, &forces_of(some_turned(&mesh, seed), rest));
+        }
+    }
+}
+
+/// No winding of a Moebius strip is the same everywhere.
+#[test]
+fn a_moebius_strip_bends_alike_whichever_way_its_faces_are_wound() {
+    let (around, across) = (48_u32, 4_u32);
+    let vertex = |i: u32, j: u32| if i < around { i * across + j } else { across - 1 - j };
+    let faces: Vec<[u32; 3]> = (0..around)
+        .flat_map(|i| (0..across - 1).map(move |j| (i, j)))
+        .flat_map(|(i, j)| {
+            let [a, b] = [vertex(i, j), vertex(i, j + 1)];
+            let [c, d] = [vertex(i + 1, j + 1), vertex(i + 1, j)];
+            [[a, b, c], [a, c, d]]
+        })
+        .collect();
+    let mesh = Mesh::from_faces((around * across) as usize, &faces).expect("a strip");
+    let places = (0..around * across).map(|number| {
+        let angle = std::f64::consts::TAU * f64::from(number / across) / f64::from(around);
+        let (sine, cosine) = angle.sin_cos();
+        let out = 0.05 * (f64::from(number % across) - 1.5);
+        let radius = 0.5 + out * (0.5 * angle).cos();
+        Vector::new(radius * cosine, radius * sine, out * (0.5 * angle).sin())
+    });
+    let rest: Vec<Vector> = places.collect();
+    let forces = forces_of(mesh.clone(), &rest);
+    for seed in [0, 1000, 2000] {
+        assert_same_forces(&forces, &forces_of(some_turned(&mesh, seed), &rest));
+    }
+}

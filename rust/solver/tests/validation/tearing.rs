@@ -366,3 +366,60 @@ fn what_was_a_hard_pin_stays_whole() {
     let around_pole = torn.iter().filter(|edge| pole.contains(&edge[0]) && pole.contains(&edge[1]));
     assert_eq!(around_pole.count(), 0, "{torn:?}");
 }
+
+#[test]
+fn torn_cloth_that_is_put_back_whole_still_has_two_sides() {
+    let mut simulation = flag(1, IntegratorKind::ImplicitEuler);
+    run(&mut simulation, 12);
+    let origins = simulation.origins(0);
+    assert!(origins.len() > 256);
+    let given = simulation.given(0).positions.clone();
+    simulation.set_positions(0, &given);
+    assert_eq!(simulation.certificate().intersections, Some(0));
+    let moved = simulation.positions(0);
+    let way = moved.iter().zip(&origins).map(|(x, &origin)| (x - given[origin as usize]).norm());
+    assert!(way.fold(0.0, f64::max) < 6e-5);
+    let apart = origins.iter().enumerate().skip(256);
+    assert!(
+        apart.clone().all(|(piece, &origin)| (moved[piece] - moved[origin as usize]).norm() > 1e-6)
+    );
+    for _ in 0..6 {
+        let certificate = simulation.advance().expect("a frame");
+        assert_eq!(certificate.intersections, Some(0), "frame {}", certificate.frame);
+    }
+}
+
+/// A sheet that lies on a table, and opens there.
+#[test]
+fn contacts_press_as_hard_at_the_frame_of_a_tear_as_before_it() {
+    let n = 8;
+    let pairs = (0..n - 1).map(|c| [3 * n + c, 3 * n + c + 1]).collect();
+    let tear = Tear { openings: vec![Opening { frame: 40, pairs }], ..Tear::default() };
+    let springs = SpringMaterial { air_damping: 0.01, ..material([200.0, 50.0, 1.0]) };
+    let cloth = sheet([n, n], 0.05, &Mass::Density(0.2), springs, &[]);
+    let positions = cloth.positions.iter().map(|x| x + Vector::z() * 0.003).collect();
+    let collision = Some(Collision { thickness: 0.003, ..Collision::default() });
+    let cloth = Cloth { positions, collision, tear: Some(tear), ..cloth };
+    let weight = crate::sheets::G * cloth.masses.iter().sum::<f64>();
+    let table = crate::contact_things::floor(0.3);
+    let settings = settings(IntegratorKind::ImplicitEuler);
+    let mut simulation = Simulation::with_colliders(vec![cloth], vec![table], Vec::new(), settings)
+        .expect("a simulation");
+    let pressed = |simulation: &Simulation| {
+        simulation.vertex_contacts(0).iter().map(|force| f64::from(*force)).sum::<f64>()
+    };
+    let wait = usize::try_from(39 - simulation.frame()).expect("later");
+    run(&mut simulation, wait);
+    let before = pressed(&simulation);
+    assert!((before / weight - 1.0).abs() < 0.1, "{before} beside {weight}");
+    run(&mut simulation, 1);
+    assert_eq!(simulation.torn_edges(0).len(), n as usize - 1);
+    let now = pressed(&simulation);
+    assert!((now / weight - 1.0).abs() < 0.1, "{now} beside {weight}");
+    let forces = simulation.vertex_contacts(0);
+    assert_eq!(forces.len(), simulation.positions(0).len());
+    // Both sides of the middle row bear a part.
+    assert!((64..forces.len()).all(|piece| forces[piece] > 0.0), "{:?}", &forces[64..]);
+    run(&mut simulation, 1);
+    assert!((pressed(&simulation) / weight - 1.0).abs() < 0.1, "{}", pressed(&simulation));
+}

@@ -34,7 +34,7 @@ const MAGIC: &[u8; 8] = b"BOUCLECK";
 const VERSION: u32 = 6;
 const HEADER: usize = 36;
 /// Far beyond any frame of a program, and far from where counting ends.
-const LAST_FRAME: i32 = 1 << 30;
+const LAST_FRAME: u32 = 1 << 30;
 
 /// What a checkpoint holds.
 #[derive(Debug, PartialEq)]
@@ -161,7 +161,7 @@ impl Checkpoint {
             && self.state.first_lost().is_none()
             && self.memory.as_ref().is_none_or(remembers_well)
             && self.substeps <= MOST_SUBSTEPS
-            && self.frame.abs() < LAST_FRAME
+            && self.frame.unsigned_abs() < LAST_FRAME
     }
 
     fn read_body(reader: &mut Reader<'_>) -> Option<Self> {

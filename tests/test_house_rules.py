@@ -23,6 +23,7 @@ CRATES = {
     "boucle-solver": {"boucle-geometry"},
     "boucle-scene": {"boucle-geometry", "boucle-solver"},
     "boucle-python": {"boucle-geometry", "boucle-solver", "boucle-scene"},
+    "boucle-fuzz": {"boucle-geometry", "boucle-solver", "boucle-scene"},
 }
 """Each crate and those of ours that it may use."""
 

@@ -66,5 +66,5 @@ def read(path: str) -> Checkpoint | None:
         numbers = int(head["frame"]), int(head["samples"])
         cloths = tuple(map(str, head["cloths"]))
         return Checkpoint(*numbers, str(head["digest"]), state, str(head["bake"]), cloths)
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
         raise Refusal(f'the checkpoint "{path}" is damaged: bake from the start') from error

@@ -6,6 +6,7 @@ sample rate (1), int32 sample count; then one sample a frame, float32 (n, 3), me
 
 from __future__ import annotations
 
+import math
 import os
 import struct
 from array import array
@@ -42,13 +43,11 @@ def read_header(path: str) -> Header:
         with open(path, "rb") as file:
             head = file.read(_HEADER.size)
     except OSError as error:
-        raise CacheRefusal(
-            f'the cache "{path}" cannot be read ({error.strerror}): bake again'
-        ) from error
+        raise _unreadable(path, error) from error
     if len(head) < _HEADER.size or not head.startswith(_SIGNATURE):
         raise CacheRefusal(f'the cache "{path}" is not a PC2 file: bake again')
     _, _, vertex_count, first_frame, _, sample_count = _HEADER.unpack(head)
-    if vertex_count < 0 or sample_count < 0:
+    if vertex_count < 0 or sample_count < 0 or not math.isfinite(first_frame):
         raise CacheRefusal(f'the cache "{path}" is damaged: bake again')
     return Header(vertex_count, first_frame, sample_count)
 
@@ -84,12 +83,22 @@ def read_sample(path: str, index: int) -> array:
         raise CacheRefusal(
             f'the cache "{path}" has no sample {index}: it holds {header.sample_count}'
         )
-    with open(path, "rb") as file:
-        file.seek(_HEADER.size + index * header.sample_bytes)
-        data = file.read(header.sample_bytes)
+    start = _HEADER.size + index * header.sample_bytes
+    try:
+        with open(path, "rb") as file:
+            # To read what the header claims would take the memory for it first.
+            is_there = os.fstat(file.fileno()).st_size >= start + header.sample_bytes
+            file.seek(start)
+            data = file.read(header.sample_bytes if is_there else 0)
+    except OSError as error:
+        raise _unreadable(path, error) from error
     if len(data) < header.sample_bytes:
         raise CacheRefusal(f'the cache "{path}" is truncated: bake again')
     return array("f", data)
+
+
+def _unreadable(path: str, error: OSError) -> CacheRefusal:
+    return CacheRefusal(f'the cache "{path}" cannot be read ({error.strerror}): bake again')
 
 
 class Writer:

@@ -6,6 +6,7 @@ import difflib
 import json
 import math
 import re
+import sys
 import tomllib
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
@@ -81,7 +82,7 @@ def checked_name(name: str, shipped: Iterable[str], own: Iterable[str]) -> str:
                       f"{LONGEST_NAME} are accepted")  # fmt: skip
     if _FORBIDDEN.search(name) or _RESERVED.match(name):
         raise Refusal(
-            f'"{name}" cannot be the name of a preset: use letters, digits, spaces, "-" and "_"'
+            f'"{" ".join(name.split())}" cannot be the name of a preset: use letters, digits, spaces, "-" and "_"'
         )
     for taken, cure in ((shipped, "choose another"), (own, "delete that one first")):
         if name.casefold() in {one.casefold() for one in taken}:
@@ -92,7 +93,7 @@ def checked_name(name: str, shipped: Iterable[str], own: Iterable[str]) -> str:
 def _load(name: str, text: str) -> dict[str, Any]:
     try:
         document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:
         raise Refusal(f'the preset "{name}" is not TOML ({error}): mend or delete it') from error
     kinds = {_DESCRIPTION: str, _SETTINGS: dict}
     for key, value in document.items():
@@ -128,6 +129,8 @@ def _refused(value: Any, setting: Setting) -> str:
         ((int,), "a whole number") if setting.kind == "INT" else ((int, float), "a number")
     )
     is_number = isinstance(value, kinds) and not isinstance(value, bool)
+    # Whole numbers have no end in TOML, but numbers with a point have.
+    is_number = is_number and abs(value) <= sys.float_info.max
     if is_number and setting.minimum <= value <= setting.maximum:
         return ""
     return f"{words} from {setting.minimum:g} to {setting.maximum:g}"

@@ -119,7 +119,7 @@ def read(path: str) -> dict[str, Any]:
     try:
         with open(path, "rb") as file:
             content = json.load(file)
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return {}
     return content if isinstance(content, dict) else {}
 

@@ -1,6 +1,10 @@
 """Wrong scenes and meshes: each ends with exit code 2 and one line that names the culprit."""
 
+import json
+import os
 import re
+import subprocess
+import sys
 
 import pytest
 
@@ -122,6 +126,8 @@ SCENES = [
     ("ten million in two", OBJ, GRID.replace("[3, 3]", "[2000, 1500]") + '\n[[cloth]]\nname = "b"\n'
      + GRID.replace("[3, 3]", "[2000, 1500]"), "6000000 vertices; accepted: at most 4000000"),
     ("overflowing grid", OBJ, GRID.replace("[3, 3]", "[4294967295, 4294967295]"), "grid.vertices"),
+    ("a million by a million", OBJ, GRID.replace("[3, 3]", "[1000000, 1000000]"),
+     "cloth.flag.grid.vertices: 1000000000000 vertices; accepted: at most 4000000 a scene"),
     ("grid of one row", OBJ, GRID.replace("[3, 3]", "[3, 1]"), "grid.vertices.1 = 1; accepted: 2"),
     ("grid of negative size", OBJ, GRID.replace("[1, 1]", "[1, -1]"), "grid.size.1 = -1"),
     ("grid without size", OBJ, "grid = { vertices = [3, 3] }", "cloth.flag.grid.size is missing"),
@@ -162,6 +168,15 @@ SCENES = [
     ("collider no cache", "[solver]", '[[collider]]\nname = "ball"\nmesh = "flag.obj"\ncache = "flag.obj"\n[solver]',
      'collider.ball.cache = "flag.obj": it is no point cache; accepted: a POINTCACHE2 file'),
     ("velocity huge", DENSITY, DENSITY + "\nvelocity = [0, 0, -1e9]", "cloth.flag.velocity.2 = -1000000000.0; accepted"),
+    # files elsewhere
+    ("mesh out of the folder", OBJ, 'mesh = "../flag.obj"',
+     'cloth.flag.mesh = "../flag.obj": it leads out of the scene\'s folder; accepted: a file in that folder'),
+    ("rest out of the folder", OBJ, OBJ + '\nrest = "a/../../flag.obj"', "it leads out of the scene's folder"),
+    ("collider out of the folder", "[solver]", '[[collider]]\nname = "ball"\nmesh = "./../a.obj"\n[solver]',
+     'collider.ball.mesh = "./../a.obj": it leads out of the scene\'s folder'),
+    ("cache out of the folder", "[solver]",
+     '[[collider]]\nname = "ball"\nmesh = "flag.obj"\ncache = "../../etc/passwd"\n[solver]',
+     'collider.ball.cache = "../../etc/passwd": it leads out'),
     # syntax
     ("unclosed table", "[solver]", "[solver", "line 16"),
     ("unclosed text", '"flag"\n', '"flag\n', "line 7"),
@@ -277,3 +292,41 @@ def test_ten_million_vertices_of_a_mesh_are_refused_before_they_fill_the_memory(
     (tmp_path / "scene.toml").write_text(GOOD)
     (tmp_path / "flag.obj").write_text("v 0 0 0\n" * 10_000_000)
     assert "line 4000001: more than 4000000 vertices" in refused(run_bake, tmp_path)
+
+
+def test_a_mesh_elsewhere_is_read_where_it_is_given_absolutely(run_bake, tmp_path):
+    (tmp_path / "scenes").mkdir()
+    (tmp_path / "meshes").mkdir()
+    path = tmp_path / "meshes" / "flag.obj"
+    path.write_text(QUADS)
+    (tmp_path / "scenes" / "scene.toml").write_text(
+        GOOD.replace('"flag.obj"', json.dumps(str(path)))
+    )
+    result = run_bake("scenes/scene.toml", "--out", "out")
+    assert result.returncode == 0, result.stderr
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes with a name here")
+def test_a_pipe_that_nobody_writes_to_is_no_mesh(run_bake, tmp_path):
+    (tmp_path / "scene.toml").write_text(GOOD)
+    os.mkfifo(tmp_path / "flag.obj")
+    assert "it is no file; accepted" in refused(run_bake, tmp_path)
+
+
+NO_ROOM = """
+import json, resource, boucle_core
+resource.setrlimit(resource.RLIMIT_AS, (3 << 30, 3 << 30))
+cloth = {"name": "flag", "model": "fabric", "grid": {"size": [1, 1], "vertices": [700, 700]}}
+print(boucle_core.run_batch([json.dumps({"cloth": [cloth]})], threads=1)[0]["error"])
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="memory is limited by Linux's means")
+def test_cloth_that_the_memory_does_not_hold_is_refused_with_its_size():
+    done = subprocess.run(
+        [sys.executable, "-c", NO_ROOM], capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert (
+        "490000 vertices need about 5.9 GB of memory, which the system does not give" in done.stdout
+    )

@@ -57,6 +57,11 @@ impl Assembly {
             let accepted = format!("{}", scene.collider.len());
             return Err(Error::refuse("colliders", colliders.len(), &accepted));
         }
+        let mut counts = [0; 2];
+        for (description, rest) in scene.cloth.iter().zip(&meshes) {
+            counts[usize::from(description.model == Model::Fabric)] += rest.positions.len() as u64;
+        }
+        limits::memory(counts)?;
         let mut tracks = Vec::with_capacity(meshes.len());
         let mut cloths = Vec::with_capacity(meshes.len());
         let mut shape_tracks = Vec::with_capacity(meshes.len());

@@ -6,8 +6,10 @@ use std::ops::RangeInclusive;
 
 use crate::error::{Error, Result};
 
-/// Vertices of all cloths of a scene together (at most 4 million: about 4 GB of springs and state).
+/// Vertices of all cloths of a scene together.
 pub const MAX_VERTICES: usize = 4_000_000;
+/// Memory (bytes) that a vertex of springs takes, and one of fabric: sheets of 250² that collide, by BDF2, were seen to take so much.
+const VERTEX_BYTES: [u64; 2] = [3000, 12_000];
 /// Bytes of a scene file (64 MiB).
 pub const MAX_SCENE_BYTES: u64 = 64 << 20;
 /// Largest coordinate and size (m); beyond it a float32 cache resolves less than 6 cm.
@@ -65,6 +67,24 @@ pub(crate) fn vertices(key: &str, count: u64) -> Result<()> {
     Err(Error::input(format!("{key}: {count} vertices; accepted: at most {MAX_VERTICES} a scene")))
 }
 
+/// Refuses cloths of so many vertices of springs, and of fabric, that the system has no memory for, before any of it is taken.
+///
+/// # Errors
+/// [`Error::Input`] with the memory that they need.
+pub(crate) fn memory(vertices: [u64; 2]) -> Result<()> {
+    let bytes: u64 = vertices.iter().zip(VERTEX_BYTES).map(|(count, each)| count * each).sum();
+    let asked = usize::try_from(bytes).ok().map(|bytes| Vec::<u8>::new().try_reserve_exact(bytes));
+    if let Some(Ok(())) = asked {
+        return Ok(());
+    }
+    let count: u64 = vertices.iter().sum();
+    let gigabytes = bytes as f64 / 1e9;
+    Err(Error::input(format!(
+        "the cloths together: {count} vertices need about {gigabytes:.1} GB of memory, which the \
+         system does not give; accepted: fewer vertices, or a machine with more memory"
+    )))
+}
+
 /// Refuses more worker threads than make sense.
 ///
 /// # Errors
@@ -87,6 +107,13 @@ mod tests {
             assert!(above_zero("key", value, f64::MAX, "").is_err());
             assert!(vector("key", &[0.0, value], 1.0, "").is_err());
         }
+    }
+
+    #[test]
+    fn more_memory_than_there_is_is_refused_before_it_is_taken() {
+        assert_eq!(memory([4, 4]), Ok(()));
+        let error = memory([0, 1 << 49]).expect_err("millions of gigabytes").to_string();
+        assert!(error.contains("562949953421312 vertices need about 6755399441.1 GB"), "{error}");
     }
 
     #[test]

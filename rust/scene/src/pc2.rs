@@ -212,7 +212,8 @@ pub fn read(path: &Path) -> Result<(Header, Vec<f32>)> {
     let refuse = |error| Error::cache(path, "read", &error);
     let mut file = File::open(path).map_err(refuse)?;
     let header = Header::read(&mut file).map_err(refuse)?;
-    let wanted = 12 * u64::from(header.vertex_count) * u64::from(header.sample_count);
+    let numbers = u64::from(header.vertex_count) * u64::from(header.sample_count);
+    let wanted = numbers.saturating_mul(12);
     let mut bytes = Vec::new();
     file.take(wanted).read_to_end(&mut bytes).map_err(refuse)?;
     if (bytes.len() as u64) < wanted {
@@ -286,5 +287,19 @@ mod tests {
         }
         std::fs::write(&path, b"POINTCACHE1").expect("there is room");
         assert!(read(&path).is_err());
+    }
+
+    /// Four billion samples of four billion vertices are more bytes than can be counted.
+    #[test]
+    fn a_header_that_claims_more_than_there_is_is_refused() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("flag.pc2");
+        for (vertex_count, sample_count) in [(u32::MAX, u32::MAX), (1 << 31, 1), (1, 1 << 31)] {
+            let mut bytes = Header { vertex_count, first_frame: 1, sample_count }.bytes().to_vec();
+            bytes.extend([0; 12]);
+            std::fs::write(&path, bytes).expect("there is room");
+            let error = read(&path).expect_err("there are 12 bytes");
+            assert!(error.to_string().contains("cannot be read"), "{error}");
+        }
     }
 }

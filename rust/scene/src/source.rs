@@ -1,8 +1,8 @@
 //! Scene files and the mesh files beside them.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{BufReader, Read};
-use std::path::Path;
+use std::path::{Component, Path};
 
 use boucle_geometry::{Mesh, Vector};
 
@@ -59,7 +59,7 @@ fn rest_mesh(cloth: &ClothDescription, folder: &Path) -> Result<RestMesh> {
         return Err(Error::input(format!("{at}.grid is missing; accepted: it or mesh")));
     };
     let place = format!("{at}.mesh = \"{name}\"");
-    let file = open(&folder.join(name)).map_err(|error| error.within(&place))?;
+    let file = open_beside(folder, name).map_err(|error| error.within(&place))?;
     let Content { mesh, positions, uvs } =
         obj::read(BufReader::new(file), cloth.up).map_err(|error| error.within(&place))?;
     Ok(RestMesh { mesh, positions, rest: None, uvs, grid: None })
@@ -69,7 +69,7 @@ fn rest_mesh(cloth: &ClothDescription, folder: &Path) -> Result<RestMesh> {
 fn rest_shape(cloth: &ClothDescription, mesh: &Mesh, folder: &Path) -> Result<Option<Vec<Vector>>> {
     let Some(name) = &cloth.rest else { return Ok(None) };
     let place = format!("cloth.{}.rest = \"{name}\"", cloth.name);
-    let file = open(&folder.join(name)).map_err(|error| error.within(&place))?;
+    let file = open_beside(folder, name).map_err(|error| error.within(&place))?;
     let Content { mesh: other, mut positions, .. } =
         obj::read(BufReader::new(file), cloth.up).map_err(|error| error.within(&place))?;
     let [one, two] = [mesh, &other].map(|mesh| (mesh.vertex_count(), mesh.face_count()));
@@ -113,7 +113,7 @@ fn rest_collider(collider: &ColliderDescription, folder: &Path) -> Result<RestCo
         return Err(Error::input(format!("{at} has no shape; accepted: {accepted}")));
     };
     let place = format!("{at}.mesh = \"{name}\"");
-    let file = open(&folder.join(name)).map_err(|error| error.within(&place))?;
+    let file = open_beside(folder, name).map_err(|error| error.within(&place))?;
     let Content { mesh, positions, .. } =
         obj::read(BufReader::new(file), collider.up).map_err(|error| error.within(&place))?;
     let mut rest = RestCollider::of_mesh(mesh, positions, collider)?;
@@ -122,22 +122,53 @@ fn rest_collider(collider: &ColliderDescription, folder: &Path) -> Result<RestCo
             let count = rest.positions.len();
             Samples::read(BufReader::new(file), count, collider.up, &collider.transform)
         };
-        let samples = open(&folder.join(name)).and_then(read);
+        let samples = open_beside(folder, name).and_then(read);
         rest.samples =
             Some(samples.map_err(|error| error.within(&format!("{at}.cache = \"{name}\"")))?);
     }
     Ok(rest)
 }
 
+/// Opens a file that a scene names: in the scene's folder or below, or at an absolute path.
+fn open_beside(folder: &Path, name: &str) -> Result<File> {
+    if leads_out(Path::new(name)) {
+        return Err(Error::input(
+            "it leads out of the scene's folder; accepted: a file in that folder or below, or an \
+             absolute path",
+        ));
+    }
+    let path = folder.join(name);
+    // To open what is no file, such as a pipe that nobody writes to, may take for ever.
+    if fs::metadata(&path).is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir()) {
+        return Err(unreadable("it is no file"));
+    }
+    open(&path)
+}
+
+/// Whether a relative path may lead out of the folder that it starts from.
+fn leads_out(path: &Path) -> bool {
+    let depths = path.components().scan(0_i32, |depth, part| {
+        match part {
+            Component::Normal(_) => *depth += 1,
+            Component::CurDir => {}
+            // Of a drive of its own, or from the top of this one: relative all the same, on Windows.
+            Component::ParentDir | Component::Prefix(_) | Component::RootDir => *depth -= 1,
+        }
+        Some(*depth)
+    });
+    !path.is_absolute() && depths.min().is_some_and(|least| least < 0)
+}
+
 /// Opens a file that is to be read; a folder is refused.
 fn open(path: &Path) -> Result<File> {
-    let refuse = |reason: &str| {
-        let accepted = "accepted: the path of a file that can be read";
-        Error::input(format!("it cannot be read: {reason}; {accepted}"))
-    };
-    let file = File::open(path).map_err(|error| refuse(&error.to_string()))?;
-    let metadata = file.metadata().map_err(|error| refuse(&error.to_string()))?;
-    if metadata.is_dir() { Err(refuse("it is a folder")) } else { Ok(file) }
+    let file = File::open(path).map_err(|error| unreadable(&error.to_string()))?;
+    let metadata = file.metadata().map_err(|error| unreadable(&error.to_string()))?;
+    if metadata.is_dir() { Err(unreadable("it is a folder")) } else { Ok(file) }
+}
+
+fn unreadable(reason: &str) -> Error {
+    let accepted = "accepted: the path of a file that can be read";
+    Error::input(format!("it cannot be read: {reason}; {accepted}"))
 }
 
 fn read_text(path: &Path) -> Result<String> {
@@ -155,4 +186,20 @@ fn read_text(path: &Path) -> Result<String> {
         let line = error.as_bytes()[..start].split(|&byte| byte == b'\n').count();
         Error::input(format!("line {line} is not UTF-8; accepted: TOML text"))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_an_absolute_path_leads_out_of_the_folder() {
+        for inside in ["a.obj", "./a.obj", "sub/a.obj", "sub/../a.obj", "a..b", "...", ""] {
+            assert!(!leads_out(Path::new(inside)), "{inside}");
+        }
+        for outside in ["..", "../a.obj", "sub/../../a.obj", "./../sub/a.obj"] {
+            assert!(leads_out(Path::new(outside)), "{outside}");
+        }
+        assert!(!leads_out(&std::env::temp_dir().join("../a.obj")));
+    }
 }

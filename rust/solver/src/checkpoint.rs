@@ -27,11 +27,14 @@ use crate::goals::Goal;
 use crate::grab::Grab;
 use crate::implicit::Memory;
 use crate::pins::Held;
-use crate::state::State;
+use crate::settings::MOST_SUBSTEPS;
+use crate::state::{LARGEST, State};
 
 const MAGIC: &[u8; 8] = b"BOUCLECK";
 const VERSION: u32 = 6;
 const HEADER: usize = 36;
+/// Far beyond any frame of a program, and far from where counting ends.
+const LAST_FRAME: u32 = 1 << 30;
 
 /// What a checkpoint holds.
 #[derive(Debug, PartialEq)]
@@ -133,7 +136,32 @@ impl Checkpoint {
         if reader.take().map(u32::from_le_bytes) != Some(VERSION) {
             return Err(Error::BadCheckpoint("is of another version; accepted: version 6"));
         }
-        Self::read_body(&mut reader).ok_or_else(damaged)
+        Self::read_body(&mut reader).filter(Self::is_sound).ok_or_else(damaged)
+    }
+
+    /// Whether every number is one that a simulation can come to.
+    fn is_sound(&self) -> bool {
+        let winds = self.winds.iter().flatten().chain([&self.gravity]);
+        let vectors = winds.chain(self.colliders.iter().flatten());
+        let pins = self.pins.iter().flat_map(|pin| [&pin.target, &pin.goal]);
+        let goals = self.grab.goals.iter().flat_map(|goal| [&goal.from, &goal.to]);
+        let positive = self.grab.goals.iter().flat_map(|goal| [goal.stiffness, goal.damping]);
+        let positive = positive.chain(self.pin_stiffness.iter().copied());
+        let numbers = [&self.water, &self.tears, &self.shape].into_iter().flatten().copied();
+        let is_number = |number: f64| number.abs() <= LARGEST;
+        let remembers_well = |memory: &Memory| {
+            let numbers = memory.tensions.iter().chain([&memory.step, &memory.error]);
+            numbers.copied().all(is_number)
+                && memory.before.first_lost().is_none()
+                && memory.substeps <= MOST_SUBSTEPS
+        };
+        vectors.chain(pins).chain(goals).flatten().copied().chain(numbers).all(is_number)
+            && positive.into_iter().all(|number| (0.0..=LARGEST).contains(&number))
+            && self.pins.iter().all(|pin| (0.0..=1.0).contains(&pin.weight))
+            && self.state.first_lost().is_none()
+            && self.memory.as_ref().is_none_or(remembers_well)
+            && self.substeps <= MOST_SUBSTEPS
+            && self.frame.unsigned_abs() < LAST_FRAME
     }
 
     fn read_body(reader: &mut Reader<'_>) -> Option<Self> {
@@ -311,6 +339,30 @@ mod tests {
         for memory in [checkpoint().memory, None] {
             let checkpoint = Checkpoint { memory, ..checkpoint() };
             assert_eq!(Checkpoint::from_bytes(&checkpoint.to_bytes()), Ok(checkpoint));
+        }
+    }
+
+    /// Whole by its checksum all the same.
+    #[test]
+    fn what_no_simulation_comes_to_is_refused() {
+        let spoils: [fn(&mut Checkpoint); 12] = [
+            |bad| bad.state.position.0[1][0] = f64::NAN,
+            |bad| bad.state.velocity.0[2][1] = 1e200,
+            |bad| bad.frame = i32::MIN,
+            |bad| bad.substeps = u32::MAX,
+            |bad| bad.pins[0].weight = 1.5,
+            |bad| bad.pins[0].target.z = f64::INFINITY,
+            |bad| bad.pin_stiffness[0] = -1.0,
+            |bad| bad.grab.goals[0].damping = f64::NAN,
+            |bad| bad.gravity.x = f64::NAN,
+            |bad| bad.colliders[1][0].y = f64::NEG_INFINITY,
+            |bad| bad.shape[1] = 1e300,
+            |bad| bad.memory.iter_mut().for_each(|memory| memory.step = f64::NAN),
+        ];
+        for (number, spoil) in spoils.iter().enumerate() {
+            let mut bad = checkpoint();
+            spoil(&mut bad);
+            assert!(Checkpoint::from_bytes(&bad.to_bytes()).is_err(), "{number}");
         }
     }
 

@@ -128,7 +128,7 @@ impl Rest {
         }
         if cloth.fabric.is_some() {
             let angles: Vec<f64> = present.collect();
-            fabrics.put_rest(number, &cloth.springs, &angles);
+            fabrics.put_rest(number, &cloth.springs, &self.given, &angles);
         }
     }
 

@@ -5,6 +5,9 @@ use boucle_geometry::Vector;
 use crate::aligned::Aligned;
 use crate::cloth::FARTHEST;
 
+/// The largest number that anything here may come to: its square, times a mass or a stiffness, is a number still.
+pub(crate) const LARGEST: f64 = 1e100;
+
 /// A vector for each particle, stored as three arrays so that neighbours load side by side.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Coordinates(pub(crate) [Aligned; 3]);
@@ -68,12 +71,13 @@ impl State {
         self.position.copy_from(&other.position);
         self.velocity.copy_from(&other.velocity);
     }
+
     /// The first particle that left the finite numbers, or the space in which numbers are fine enough.
     pub(crate) fn first_lost(&self) -> Option<usize> {
         let is_lost = |&particle: &usize| {
             let position = self.position.get(particle);
             position.iter().any(|x| !(x.abs() <= 1e3 * FARTHEST))
-                || self.velocity.get(particle).iter().any(|v| !v.is_finite())
+                || self.velocity.get(particle).iter().any(|v| !(v.abs() <= LARGEST))
         };
         (0..self.len()).find(is_lost)
     }

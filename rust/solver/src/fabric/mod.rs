@@ -184,14 +184,27 @@ impl Fabrics {
         self.hinges[self.parts[cloth].hinges.clone()].iter().map(|one| one.rest_angle)
     }
 
-    /// Takes the rest lengths (m) of a cloth's springs and the rest angles (rad) of its hinges. Compliance stays that of the
-    /// faces as they were given.
-    pub(crate) fn put_rest(&mut self, cloth: usize, springs: &[Spring], angles: &[f64]) {
+    /// Takes the rest lengths (m) of a cloth's springs, which were given others, and the rest angles (rad) of its hinges.
+    /// Compliance stays that of the faces as they were given.
+    pub(crate) fn put_rest(
+        &mut self,
+        cloth: usize,
+        springs: &[Spring],
+        given: &[f64],
+        angles: &[f64],
+    ) {
         let Part { triangles, hinges } = self.parts[cloth].clone();
         for number in triangles {
-            let lengths = self.sides[number].map(|side| springs[side as usize].rest_length);
+            let sides = self.sides[number].map(|side| side as usize);
+            let lengths = sides.map(|side| springs[side].rest_length);
             let Triangle { corners, law, .. } = self.triangles[number];
-            let flat = resized(self.faces[number].flat, lengths);
+            // To the bit what it was where nothing has changed.
+            let is_given = sides
+                .iter()
+                .zip(lengths)
+                .all(|(&side, length)| length.to_bits() == given[side].to_bits());
+            let given = self.faces[number].flat;
+            let flat = if is_given { given } else { resized(given, lengths) };
             self.triangles[number] = Triangle::new(corners, flat, law);
         }
         for (one, angle) in self.hinges[hinges].iter_mut().zip(angles) {

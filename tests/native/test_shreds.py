@@ -74,7 +74,9 @@ def test_ten_thousand_tears_stay_finite_and_gain_no_energy(model):
     assert len(torn) == len(set(torn)) > 10_000
     # No face is lost: every one is still about as large as it was.
     quads = places.reshape(-1, 4, 3)
-    areas = np.linalg.norm(np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1]), axis=1) / 2
+    areas = (
+        np.linalg.norm(np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1]), axis=1) / 2
+    )
     assert len(quads) == 107 * 107
     assert areas.min() > 0.0
     assert areas.sum() == pytest.approx(1.0, rel=0.15)

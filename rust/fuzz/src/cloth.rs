@@ -159,6 +159,8 @@ fn tear(source: &mut Unstructured<'_>, cloth: &Cloth) -> Tear {
         seed: any(source),
         strength: Vec::new(),
         seam_force: chance(source, 60).then(|| number(source, 1e-3, 10.0)),
+        stress: chance(source, 60).then(|| number(source, 1e-2, 1000.0)),
+        start: chance(source, 60).then(|| i32::from(any::<u8>(source) % 4)),
     }
 }
 

@@ -422,7 +422,7 @@ fn a_bake_that_would_write_over_its_own_mesh_is_refused_and_loses_nothing() {
         r#"mesh = "sheet.obj""#,
     );
     let place = Place::new(
-        &scene.replace(r#"pins = ["top"]"#, "").split("[cloth.tear]").next().expect("a scene"),
+        scene.replace(r#"pins = ["top"]"#, "").split("[cloth.tear]").next().expect("a scene"),
     );
     let mesh = "# mine\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
     std::fs::write(place.0.path().join("sheet.obj"), mesh).expect("room");

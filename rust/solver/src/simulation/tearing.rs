@@ -136,7 +136,9 @@ impl Simulation {
             for &(edge, _) in edges {
                 has_torn |= split.tear(edge);
             }
-            seams.iter().for_each(|&seam| split.undo(seam));
+            for &seam in seams {
+                split.undo(seam);
+            }
             has_torn |= !seams.is_empty();
         }
         has_torn

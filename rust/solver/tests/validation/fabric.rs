@@ -242,7 +242,7 @@ fn forces_of(mesh: Mesh, rest: &[Vector]) -> Vec<Vector> {
 }
 
 fn assert_same_forces(a: &[Vector], b: &[Vector]) {
-    let size = a.iter().map(|force| force.norm()).fold(0.0, f64::max);
+    let size = a.iter().map(nalgebra::Matrix::norm).fold(0.0, f64::max);
     let error = crate::sheets::farthest(a, b);
     assert!(size > 1e-3 && error < 1e-8 * size, "{error:e} of {size:e} N");
 }

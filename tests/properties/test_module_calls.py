@@ -305,7 +305,7 @@ def test_no_arguments_break_a_function(name, data):
         words
         and data.draw(st.integers(0, 9)) == 0
         and isinstance(words[0], np.ndarray)
-        and words[0].size
+        and words[0].flags.c_contiguous
     ):
         words[-1] = words[0].ravel()[:7]  # both in one place
     out = words[-1] if FUNCTIONS[name][-1:] == ("results",) else None
@@ -328,7 +328,7 @@ def test_no_arrays_of_a_mesh_break_a_simulation(data):
         "threads": data.draw(
             st.one_of(st.just(1), st.just(1), integers.filter(lambda n: not 2 < n < 1025))
         ),
-        "colliders": data.draw(st.lists(st.just(tuple(mesh)), max_size=1)),
+        "colliders": [tuple(mesh)] if data.draw(st.booleans()) else [],
         "rests": data.draw(st.lists(roles, max_size=2)),
         "uvs": data.draw(st.lists(roles, max_size=2)),
     }

@@ -5,12 +5,12 @@ Standard library only.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import subprocess
-import threading
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from environment import (
@@ -33,7 +33,7 @@ from environment import (
 CARGO_RESULT = re.compile(r"^test result: \w+\. (\d+) passed; (\d+) failed; (\d+) ignored")
 PYTHON_SOURCES = ("addon", "scripts", "tests", "rust/python/boucle_core.pyi")
 RUST_TIMEOUT = 1500.0
-PYTHON_TIMEOUT = 1800.0
+PYTHON_TIMEOUT = 2100.0
 
 
 @dataclass
@@ -81,12 +81,10 @@ def check() -> None:
 
 
 def test(arguments: list[str]) -> bool:
-    """Run the Rust tests, then pytest with `arguments`; print the closing line; True if all is well."""
+    """Run the Rust tests and pytest with `arguments` beside each other; print the closing line; True if all is well."""
     set_up(other_blenders=True, sweeps=True)
     count = Count()
-    with heading("Rust tests"):
-        run_cargo_test(count)
-    with heading("Python tests"):
+    with heading("Tests"), cargo_tests(count):
         run_pytest(count, arguments)
     for fault in count.faults:
         print(f"fault: {fault}")
@@ -94,25 +92,46 @@ def test(arguments: list[str]) -> bool:
     return not (count.failed or count.faults)
 
 
-def run_cargo_test(count: Count) -> None:
-    """Run the workspace's tests, show their output and add their numbers."""
+@contextlib.contextmanager
+def cargo_tests(count: Count) -> Iterator[None]:
+    """Run the workspace's tests beside what is done inside; then show their output and add their numbers."""
     command = ["cargo", "test", "--workspace", "--no-fail-fast"]
-    process = subprocess.Popen(
-        command, cwd=ROOT, stdout=subprocess.PIPE, text=True, start_new_session=os.name == "posix"
-    )
-    watchdog = threading.Timer(RUST_TIMEOUT, stop, [process])
-    watchdog.start()
-    failed_before = count.failed
-    for line in process.stdout:
-        print(line, end="", flush=True)
-        found = CARGO_RESULT.match(line)
-        if found:
+    try:
+        with heading("Rust tests built"):
+            run([*command, "--no-run", "--quiet"])
+    except Failed as failed:
+        count.faults.append(str(failed))
+        yield
+        return
+    told = OUT / "test" / "rust.txt"
+    told.parent.mkdir(parents=True, exist_ok=True)
+    with told.open("wb") as file:
+        process = subprocess.Popen(
+            command, cwd=ROOT, stdout=file, stderr=file, start_new_session=os.name == "posix"
+        )
+    try:
+        yield
+        code = process.wait(RUST_TIMEOUT)
+    except subprocess.TimeoutExpired:
+        code = f"none within {RUST_TIMEOUT:.0f} s"
+    finally:
+        stop(process)
+    text = told.read_text(encoding="utf-8", errors="replace")
+    print(text, flush=True)
+    if not count_cargo(count, text) and code != 0:
+        count.faults.append(f"cargo test ended with exit code {code}")
+
+
+def count_cargo(count: Count, text: str) -> int:
+    """Add the numbers of cargo's output, and return how many tests have failed in it."""
+    failed = 0
+    for line in text.splitlines():
+        if found := CARGO_RESULT.match(line):
             count.passed += int(found[1])
-            count.failed += int(found[2])
+            failed += int(found[2])
             count.skipped += int(found[3])
-    watchdog.cancel()
-    if process.wait() != 0 and count.failed == failed_before:
-        count.faults.append(f"cargo test ended with exit code {process.returncode}")
+    count.failed += failed
+    return failed
 
 
 def run_pytest(count: Count, arguments: list[str]) -> None:

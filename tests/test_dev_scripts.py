@@ -95,7 +95,9 @@ def test_counts_of_both_test_runs_add_up_to_one_line():
     report = '<testsuites><testsuite tests="9" failures="2" errors="1" skipped="2"/></testsuites>'
     verify.add_report(count, ElementTree.fromstring(report))
     assert count.closing_line() == "7 passed, 3 failed, 3 skipped"
-    assert verify.CARGO_RESULT.match("test result: ok. 12 passed; 0 failed; 1 ignored; 0 measured")
+    told = "running\ntest result: FAILED. 12 passed; 4 failed; 1 ignored; 0 measured\n"
+    assert verify.count_cargo(count, told) == 4
+    assert count.closing_line() == "19 passed, 7 failed, 4 skipped"
 
 
 def test_a_run_that_ends_badly_without_a_failed_test_counts_as_failed():

@@ -17,24 +17,43 @@ def grid(count, spacing):
     return positions, starts, corners.astype(np.int32).ravel()
 
 
+STRETCH = {"springs": 300.0, "fabric": 2000.0}  # N/m
+DENSITY = 0.15
 MODELS = {
-    "springs": {"springs": {"stretch": 300.0, "shear": 60.0, "bend": 1.0, "deformation_rate": 0.5}},
-    "fabric": {"model": "fabric", "fabric": {"deformation_rate": 0.5}},
+    "springs": {
+        "springs": {
+            "stretch": STRETCH["springs"],
+            "shear": 60.0,
+            "bend": 1.0,
+            "deformation_rate": 0.5,
+        }
+    },
+    "fabric": {
+        "model": "fabric",
+        "fabric": {
+            "stretch_warp": STRETCH["fabric"],
+            "stretch_weft": STRETCH["fabric"],
+            "deformation_rate": 0.5,
+        },
+    },
 }
 
 
-def stretched(model, threads, count=108, collides=False):
+COUNT = 112
+MESH = grid(COUNT, 1.0 / (COUNT - 1))
+
+
+def stretched(model, threads, collides=False):
     """A free sheet of 1 m that bears next to nothing and is about to snap back from a stretch by a fifth."""
-    tear = {"enabled": True, "force": 0.02, "noise": 0.5, "seed": 3}
-    cloth = {"name": "sheet", "density": 0.15, "tear": tear, **MODELS[model]}
+    tear = {"enabled": True, "force": 0.005, "noise": 0.5, "seed": 3}
+    cloth = {"name": "sheet", "density": DENSITY, "tear": tear, **MODELS[model]}
     scene = {
         "scene": {"gravity": [0.0, 0.0, 0.0]},
         "cloth": [cloth],
-        "collision": {"self": collides, "thickness": 0.003},
+        "collision": {"self": collides, "thickness": 0.001},
     }
-    mesh = grid(count, 1.0 / (count - 1))
-    made = boucle_core.Simulation(json.dumps(scene), [mesh], threads)
-    made.set_positions(0, 1.2 * mesh[0])
+    made = boucle_core.Simulation(json.dumps(scene), [MESH], threads)
+    made.set_positions(0, 1.2 * MESH[0])
     return made
 
 
@@ -45,38 +64,48 @@ def speeds(made):
     return np.linalg.norm(velocities, axis=1)
 
 
-def corners_of(made, mesh):
+def corners_of(made):
     """(c, 3) (m)."""
-    out = np.empty((len(mesh[2]), 3))
+    out = np.empty((len(MESH[2]), 3))
     made.read_corners(0, out)
     return out
 
 
-@pytest.mark.parametrize("model", MODELS)
-def test_ten_thousand_tears_stay_finite_and_gain_no_energy(model):
-    one, two = stretched(model, 1), stretched(model, 2)
-    mesh = grid(108, 1.0 / 107)
-    least = one.certificate()["potential_energy"]
-    for frame in range(10):
-        certificate = one.advance()
-        if frame < 4:
-            assert two.advance()["hash"] == certificate["hash"]
+def hold(made, model, frames):
+    """Moves on and holds all that must be; yields the hash of each frame."""
+    fastest = np.sqrt(STRETCH[model] / DENSITY)
+    start = made.certificate()
+    assert start["kinetic_energy"] == 0.0
+    least = start["potential_energy"]
+    for frame in range(1, frames + 1):
+        certificate = made.advance()
         energy = certificate["kinetic_energy"] + certificate["potential_energy"]
         # Spinning shreds gain and lose a part in a thousand, as steps are solved in single precision.
         assert energy < 1.01 * least
         least = min(least, energy)
         assert certificate["max_strain"] < 0.5
-        places = corners_of(one, mesh)
-        assert np.isfinite(places).all()
-        assert np.abs(places).max() < 20.0
-        assert speeds(one).max() < 60.0
-    torn = one.torn_edges(0)
+        assert certificate["intersections"] in (None, 0)
+        # What snaps back goes slower than the waves that tell it to.
+        assert speeds(made).max() < fastest
+        assert np.abs(corners_of(made)).max() < 1.2 + fastest * frame / 24.0
+        yield certificate["hash"]
+    torn = made.torn_edges(0)
     assert len(torn) == len(set(torn)) > 10_000
-    # No face is lost: every one is still about as large as it was.
-    quads = places.reshape(-1, 4, 3)
-    areas = (
-        np.linalg.norm(np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1]), axis=1) / 2
-    )
-    assert len(quads) == 107 * 107
+    # No face is lost, and each is nearly as large as it was.
+    quads = corners_of(made).reshape(-1, 4, 3)
+    assert len(quads) == (COUNT - 1) ** 2
+    across = np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
+    areas = np.linalg.norm(across, axis=1) / 2.0
     assert areas.min() > 0.0
-    assert areas.sum() == pytest.approx(1.0, rel=0.15)
+    assert np.median(areas) == pytest.approx((COUNT - 1) ** -2, rel=0.05)
+
+
+@pytest.mark.parametrize(("model", "frames", "alike"), [("springs", 6, 6), ("fabric", 3, 1)])
+def test_ten_thousand_tears_stay_finite_and_gain_no_energy(model, frames, alike):
+    hashes = list(hold(stretched(model, 1), model, frames))
+    two = stretched(model, 2)
+    assert [two.advance()["hash"] for _ in range(alike)] == hashes[:alike]
+
+
+def test_ten_thousand_tears_of_cloth_that_collides_pass_through_nothing():
+    assert len(list(hold(stretched("springs", 2, collides=True), "springs", 3))) == 3

@@ -61,6 +61,7 @@ METHODS = {
     "read_contacts": ("index", "float32"),
     "read_intersections": ("index", "float32"),
     "read_corners": ("index", "corners"),
+    "read_corner_numbers": ("index", "quantity", "corner_float32"),
     "vertex_origins": ("index",),
     "torn_edges": ("index",),
     "edge_tension": ("index",),
@@ -87,6 +88,7 @@ SHAPES = {
     "numbers": (COUNT,),
     "float32": (COUNT,),
     "corners": (4 * (SIDE - 1) ** 2, 3),
+    "corner_float32": (4 * (SIDE - 1) ** 2,),
     "starts": ((SIDE - 1) ** 2,),
     "indices": (4 * (SIDE - 1) ** 2,),
     "fours": (7, 4, 3),
@@ -141,7 +143,7 @@ def plain(draw, role):
     if draw(st.integers(0, 3)) == 0:
         rows.reshape(-1)[draw(st.integers(0, rows.size - 1))] = draw(numbers)
     with np.errstate(all="ignore"):
-        return rows.astype(np.float32) if role == "float32" or draw(st.booleans()) else rows
+        return rows.astype(np.float32) if role in {"float32", "corner_float32"} or draw(st.booleans()) else rows
 
 
 @st.composite
@@ -197,6 +199,7 @@ def argument(role):
                 st.none(), st.lists(st.integers(0, COUNT - 1)), st.lists(integers, max_size=5)
             ),
             "fields": st.one_of(texts, fields),
+            "quantity": st.one_of(texts, st.sampled_from(["strain", "contact", "force"])),
             "preset": st.one_of(texts, st.sampled_from(sorted(boucle_core.fabric_presets()))),
             "bytes": st.one_of(st.binary(max_size=60), st.just(simulation().checkpoint()), spoiled),
         }[role],

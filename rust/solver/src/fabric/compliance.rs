@@ -16,9 +16,9 @@
 //! ```
 //!
 //! Any smooth surface bends with its B along any direction on any mesh, an edge with one face takes no moment, and a face all
-//! of whose corners are pinned does not bend. The sum is close to its diagonal, so a fixed number of Chebyshev steps stands for
-//! its inverse: a polynomial p, whose energy, forces and tangents agree exactly. Where curvature varies from face to face, R of
-//! [`variation`] is added:
+//! of whose corners are pinned does not bend. The sum is close to its diagonal, so a fixed number of Chebyshev steps
+//! ([`super::steps`]) stands for its inverse: a polynomial p, whose energy, forces and tangents agree exactly. Where curvature
+//! varies from face to face, R of [`variation`] is added:
 //!
 //! ```text
 //! m = p t          E = 1/2 (tᵀ m + mᵀ R m)          moments p (t + R m)
@@ -32,17 +32,11 @@ use rayon::prelude::*;
 
 use super::packs::LANES;
 use super::rows::{Number, Rows};
+use super::steps::{LEFT, eigenvalues, of_many, steps};
 use super::variation;
-use crate::linear::chebyshev;
 
 /// Hinges that one task handles.
 const TASK: usize = 4096;
-
-/// Error of the moments that is left, as a part of them.
-const LEFT: f64 = 0.01;
-
-/// The most Chebyshev steps: slivers are then stiffer than they should be.
-const MOST_STEPS: usize = 24;
 
 /// The least bending stiffness along one yarn, as a part of that along the other.
 const LEAST_PART: f64 = 1e-3;
@@ -136,7 +130,7 @@ impl Compliance {
         let compliances: Vec<_> = faces.iter().enumerate().map(of_face).collect();
         let mut sums = vec![0.0; hinge_count];
         let mut entries: Vec<Vec<(u32, f64)>> = vec![Vec::new(); hinge_count];
-        let mut bounds = [1.0_f64, 1.0_f64];
+        let (mut lows, mut high) = (Vec::new(), 1.0_f64);
         for (face, compliance) in faces.iter().zip(&compliances) {
             let Some(compliance) = compliance else { continue };
             for i in 0..3 {
@@ -148,8 +142,12 @@ impl Compliance {
                     }
                 }
             }
-            bounds = widened(bounds, compliance);
+            if let Some([least, most]) = eigenvalues(compliance) {
+                lows.push(least);
+                high = high.max(most);
+            }
         }
+        let low = lows.iter().copied().fold(1.0, f64::min);
         for own in &mut entries {
             own.sort_by_key(|(other, _)| *other);
         }
@@ -162,8 +160,8 @@ impl Compliance {
             rows,
             variation,
             scale: scale.as_chunks().0.iter().map(|own| own.map(|of| of as f32)).collect(),
-            steps: steps(bounds),
-            largest: (1.0 + LEFT) * (1.0 + (1.0 + LEFT) * most) / bounds[0],
+            steps: steps(low, of_many(&mut lows), high),
+            largest: (1.0 + LEFT) * (1.0 + (1.0 + LEFT) * most) / low,
             arch: Arch::new(),
         }
     }
@@ -306,23 +304,49 @@ impl<N: Number> WithSimd for Press<'_, N> {
     }
 }
 
-/// Bounds of the eigenvalues of the scaled sum, widened by those of one face: of a sum, they lie between those of its parts.
-fn widened([low, high]: [f64; 2], compliance: &Matrix3<f64>) -> [f64; 2] {
-    let diagonal = compliance.diagonal();
-    if !diagonal.iter().all(|&value| value > 0.0) {
-        return [low, high];
-    }
-    let scaled = Matrix3::from_fn(|i, j| compliance[(i, j)] / (diagonal[i] * diagonal[j]).sqrt());
-    let eigenvalues = scaled.symmetric_eigenvalues();
-    [low.min(eigenvalues.min()), high.max(eigenvalues.max())]
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fabric::elements::Elements;
+    use crate::fabric::tests::{cloth, sheet, uneven};
+    use crate::scatter::scattered;
 
-/// As many Chebyshev steps as leave little of the error.
-fn steps([low, high]: [f64; 2]) -> Vec<[f32; 2]> {
-    // Of a matrix that is hardly regular, the steps leave the softest parts out.
-    let low = low.max(high / 400.0).min(0.98 * high);
-    let root = (high / low).sqrt();
-    let factor = (root - 1.0) / (root + 1.0);
-    let count = ((0.5 * LEFT).ln() / factor.ln()).ceil().clamp(1.0, MOST_STEPS as f64);
-    chebyshev::steps(low as f32, high as f32).take(count as usize).collect()
+    /// The compliance of a sheet of so many by so many quads, and what is left of random angles (rad) that moments should press.
+    fn left(counts: [u32; 2], sizes: [f64; 2]) -> (usize, f64) {
+        let (faces, positions) = sheet(counts, sizes, 0.0);
+        let fabric = uneven();
+        let cloth = cloth(&faces, positions, 0.2, fabric.clone());
+        let mut elements = Elements::default();
+        elements.add(&cloth, &fabric, 0, 0);
+        let count = elements.hinges.len();
+        let compliance = Compliance::new(count, &elements.faces, |_| false);
+        let scale = |hinge: usize| f64::from(compliance.scale[hinge / LANES][hinge % LANES]);
+        let mut angles: Vec<f64> = (0..count).map(|i| scattered(i as u64) / scale(i)).collect();
+        angles.resize(count.next_multiple_of(LANES), 0.0);
+        let mut moments = Vec::new();
+        compliance.unvaried_moments(&angles, &mut moments, &mut Scratch::default());
+        let mut turned = vec![0.0; count];
+        for face in &elements.faces {
+            let own = face.hinges.map(|hinge| hinge.map_or(0.0, |hinge| moments[hinge as usize]));
+            let angles = face.compliance() * Vector3::from(own);
+            for (hinge, angle) in face.hinges.iter().zip(&angles) {
+                if let Some(hinge) = hinge {
+                    turned[*hinge as usize] += angle;
+                }
+            }
+        }
+        let sum = |of: &dyn Fn(usize) -> f64| (0..count).map(|i| of(i).powi(2)).sum::<f64>().sqrt();
+        let error = sum(&|i| scale(i) * (turned[i] - angles[i]));
+        (compliance.steps.len(), error / sum(&|i| scale(i) * angles[i]))
+    }
+
+    #[test]
+    fn moments_of_needles_press_the_angles_that_they_are_told() {
+        let (few, error) = left([8; 2], [1.0; 2]);
+        assert!(few <= 12 && error < LEFT, "{few}: {error}");
+        for part in [1.0 / 8.0, 1.0 / 16.0] {
+            let (_, error) = left([8; 2], [1.0, part]);
+            assert!(error < LEFT, "{part}: {error}");
+        }
+    }
 }

@@ -16,6 +16,7 @@ mod membrane;
 mod observed;
 mod packs;
 mod rows;
+mod steps;
 mod tangent;
 #[cfg(test)]
 mod tests;

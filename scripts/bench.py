@@ -76,6 +76,7 @@ def verdict(text: str, is_met: bool) -> str:
 
 def main(words: list[str]) -> int:
     """Run the benchmarks that `words` names."""
+    import bench_batch
     import bench_bridge
     import bench_contact
     import bench_explicit
@@ -90,6 +91,7 @@ def main(words: list[str]) -> int:
         "contact": bench_contact.bench,
         "fabric": bench_fabric.bench,
         "sweep": bench_sweep.bench,
+        "batch": bench_batch.bench,
     }
     names = list(entries) if words == ["all"] else words
     unknown = [name for name in names if name not in entries]

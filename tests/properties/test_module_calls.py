@@ -143,7 +143,11 @@ def plain(draw, role):
     if draw(st.integers(0, 3)) == 0:
         rows.reshape(-1)[draw(st.integers(0, rows.size - 1))] = draw(numbers)
     with np.errstate(all="ignore"):
-        return rows.astype(np.float32) if role in {"float32", "corner_float32"} or draw(st.booleans()) else rows
+        return (
+            rows.astype(np.float32)
+            if role in {"float32", "corner_float32"} or draw(st.booleans())
+            else rows
+        )
 
 
 @st.composite

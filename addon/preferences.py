@@ -12,7 +12,8 @@ class BOUCLE_AP_preferences(AddonPreferences):
 
     live_memory: IntProperty(
         name="Live Memory",
-        description="Memory that the live frames of one cloth may take (MB)",
+        description="Memory that the live frames of one cloth may take (MB). When it is full, live simulation stops: "
+        "bake, or allow more",
         default=4000,
         min=10,
         max=1_000_000,

@@ -61,6 +61,9 @@ MOST_LINES = 400
 MOST_TEST_LINES = 700
 """A test file is a list of true sentences: it may be longer than a module."""
 
+MOST_FUNCTION_LINES = 60
+"""Tests may tell a longer story."""
+
 BAD_STEMS = {"utils", "util", "helpers", "helper", "common", "manager", "misc"}
 
 UNSTEADY = {
@@ -187,6 +190,43 @@ def test_files_are_short():
                 if count > (MOST_TEST_LINES if is_test else MOST_LINES):
                     long[str(path)] = count
     assert long == {}
+
+
+def python_functions(text):
+    """Name and lines of every function."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            yield node.name, node.end_lineno - node.lineno + 1
+
+
+def rust_functions(text):
+    """Name and lines of every function with a body, whose closing brace stands below its `fn`."""
+    head = r"^( *)(?:pub(?:\([^)]*\))? )?(?:const )?fn (\w+)(?:[^;{]|; [^;\])]*\])*\{\n"
+    for found in re.finditer(head + r"(?:.*\n)*?\1\}$", text, re.MULTILINE):
+        yield found[2], found[0].count("\n") + 1
+
+
+def test_functions_are_short():
+    long = {}
+    for suffix, functions in ((".py", python_functions), (".rs", rust_functions)):
+        for folder in ("rust",) if suffix == ".rs" else ("addon", "scripts"):
+            for path, text in sources(folder, suffix):
+                is_test = "tests" in path.parts or path.stem == "tests"
+                for name, count in () if is_test else functions(text):
+                    if count > MOST_FUNCTION_LINES:
+                        long[f"{path}: {name}"] = count
+    assert long == {}
+
+
+@pytest.mark.parametrize(
+    ("functions", "text"),
+    [
+        (python_functions, "def long():\n" + "    pass\n" * 60),
+        (rust_functions, "    pub(crate) fn long() {\n" + "        f();\n" * 59 + "    }\n"),
+    ],
+)
+def test_a_long_function_is_found(functions, text):
+    assert list(functions(text)) == [("long", MOST_FUNCTION_LINES + 1)]
 
 
 def test_names_say_what_a_file_is_about():

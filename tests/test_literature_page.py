@@ -14,7 +14,7 @@ from literature_scenes import SYSTEMS
 MOST_BYTES = 120_000
 """Of one picture."""
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-SECTION = README.partition("## The literature\n")[2].partition("\n## ")[0]
+SECTION = README.partition("### The literature\n")[2].partition("\n##")[0]
 COMMANDS = re.findall(r"`\.venv/bin/python (scripts/(?:bake|sweep)\.py [^`]+)`", SECTION)
 TEST_FILES = [*ROOT.glob("tests/native/*.py"), *ROOT.glob("rust/solver/tests/validation/*.rs")]
 

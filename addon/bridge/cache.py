@@ -108,11 +108,11 @@ def _bake_of(path: str) -> dict[str, Any] | None:
         found = os.stat(path)
     except OSError:
         return None
-    return _read_bake(path, found.st_mtime_ns, found.st_size)
+    return _read_bake(path, found.st_mtime_ns, found.st_size, found.st_ino)
 
 
 @lru_cache(maxsize=256)
-def _read_bake(path: str, _written: int, _size: int) -> dict[str, Any] | None:
+def _read_bake(path: str, _written: int, _size: int, _file: int) -> dict[str, Any] | None:
     """A report is long, and is read once as long as its file stays the same."""
     return report.read(path).get("bake")
 

@@ -197,14 +197,6 @@ def bake(
     buffers = [Buffers.of(store.plan) for store in stores.each]
     pending: tuple[Step, Moment] | None = None
     usable = True
-
-    def commit(step: Step, moment: Moment) -> None:
-        samples = [
-            Sample(read.positions(pose.to_object), read.numbers, certificate)
-            for read, pose, certificate in zip(buffers, moment.poses, step.result(), strict=True)
-        ]
-        stores.write(step.frame, samples, step.seconds)
-
     try:
         if not (resume and stores.resume(simulation)):
             moment = moment_at(plan.start)
@@ -213,7 +205,7 @@ def bake(
             stores.begin()
             begin = Step(plan.start, lambda: _read(simulation, simulation.certificate(), buffers))
             begin.run()
-            commit(begin, moment)
+            _commit(stores, buffers, begin, moment)
             stores.mark(simulation)
         for frame in range(simulation.frame + 1, plan.end + 1):
             moment = moment_at(frame)
@@ -221,7 +213,7 @@ def bake(
             pending = (step, moment)
             yield step
             pending = None
-            commit(step, moment)
+            _commit(stores, buffers, step, moment)
             stores.save(simulation)
     except fatal:
         usable = False
@@ -229,10 +221,18 @@ def bake(
     finally:
         try:
             if pending and pending[0].succeeded:
-                commit(*pending)
+                _commit(stores, buffers, *pending)
             stores.finish(simulation if usable else None)
         finally:
             stores.close()
+
+
+def _commit(stores: Stores, buffers: Sequence[Buffers], step: Step, moment: Moment) -> None:
+    samples = [
+        Sample(read.positions(pose.to_object), read.numbers, certificate)
+        for read, pose, certificate in zip(buffers, moment.poses, step.result(), strict=True)
+    ]
+    stores.write(step.frame, samples, step.seconds)
 
 
 def _settle(simulation: Simulation, stores: Stores) -> Iterator[Step]:

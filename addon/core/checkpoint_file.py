@@ -1,19 +1,23 @@
 """The checkpoint beside a PC2: from it a stopped bake goes on, bit-equal to one that never stopped.
 
-Layout: a magic line, one line of JSON (frame, sample count, digest of the scene, length, the bake and its cloths), then the
-solver's own bytes, which carry their own checksum. Of several cloths that are baked together the first one's file holds the
-state of all, and the others' hold no bytes.
+Layout: a magic line, one line of JSON (frame, sample count, digest of the scene, length, the bake, its cloths and the rows of
+their reports), then the solver's own bytes, and a digest of everything before. Of several cloths that are baked together the
+first one's file holds the state and the rows of all, and the others' hold none.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
-from typing import NamedTuple
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 from . import whole_file
 from .refusal import Refusal
 
-_MAGIC = b"BOUCLE CHECKPOINT 1\n"
+_MAGIC = b"BOUCLE CHECKPOINT 2\n"
+_DIGEST_BYTES = 16
 
 
 class Checkpoint(NamedTuple):
@@ -27,6 +31,8 @@ class Checkpoint(NamedTuple):
     """Identity of the bake."""
     cloths: tuple[str, ...] = ()
     """Names of its cloths."""
+    rows: Sequence[Sequence[Mapping[str, Any]]] = ()
+    """Of each cloth's report, one for every sample."""
 
 
 def write(path: str, checkpoint: Checkpoint) -> None:
@@ -38,33 +44,49 @@ def write(path: str, checkpoint: Checkpoint) -> None:
         "length": len(checkpoint.state),
         "bake": checkpoint.bake,
         "cloths": checkpoint.cloths,
+        "rows": checkpoint.rows,
     }
-    whole_file.replace(path, _MAGIC + json.dumps(head).encode() + b"\n" + checkpoint.state)
+    content = _MAGIC + json.dumps(head).encode() + b"\n" + checkpoint.state
+    whole_file.replace(path, content + _digest(content))
+
+
+def _digest(content: bytes) -> bytes:
+    return hashlib.blake2b(content, digest_size=_DIGEST_BYTES).digest()
 
 
 def read(path: str) -> Checkpoint | None:
     """The checkpoint; None if there is none.
 
     Raises:
-        Refusal: The file is damaged.
+        Refusal: The file is damaged, or of another version.
     """
     try:
         with open(path, "rb") as file:
-            magic = file.readline(len(_MAGIC))
-            head_line = file.readline(1 << 20)
-            state = file.read()
+            content = file.read()
     except FileNotFoundError:
         return None
     except OSError as error:
         raise Refusal(f'the checkpoint "{path}" cannot be read ({error.strerror})') from error
+    version = re.match(rb"BOUCLE CHECKPOINT \d+\n", content)
+    if version and version[0] != _MAGIC:
+        raise Refusal(
+            f'the checkpoint "{path}" is of another version of Boucle: go on with that one, or bake from the start'
+        )
     try:
-        if magic != _MAGIC:
-            raise ValueError(magic)
-        head = json.loads(head_line)
-        if head["length"] != len(state):
-            raise ValueError(head)
-        numbers = int(head["frame"]), int(head["samples"])
-        cloths = tuple(map(str, head["cloths"]))
-        return Checkpoint(*numbers, str(head["digest"]), state, str(head["bake"]), cloths)
+        return _parse(content)
     except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
         raise Refusal(f'the checkpoint "{path}" is damaged: bake from the start') from error
+
+
+def _parse(content: bytes) -> Checkpoint:
+    body, digest = content[:-_DIGEST_BYTES], content[-_DIGEST_BYTES:]
+    if not body.startswith(_MAGIC) or _digest(body) != digest:
+        raise ValueError(digest)
+    line, _, state = body[len(_MAGIC) :].partition(b"\n")
+    head = json.loads(line)
+    if head["length"] != len(state):
+        raise ValueError(head["length"])
+    numbers = int(head["frame"]), int(head["samples"])
+    cloths = tuple(map(str, head["cloths"]))
+    rows = tuple([dict(row) for row in each] for each in head["rows"])
+    return Checkpoint(*numbers, str(head["digest"]), state, str(head["bake"]), cloths, rows)

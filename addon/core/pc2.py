@@ -6,10 +6,12 @@ sample rate (1), int32 sample count; then one sample a frame, float32 (n, 3), me
 
 from __future__ import annotations
 
+import hashlib
 import math
 import os
 import struct
 from array import array
+from collections.abc import Sequence
 from typing import BinaryIO, NamedTuple
 
 from .points import Points
@@ -97,6 +99,11 @@ def read_sample(path: str, index: int) -> array:
     return array("f", data)
 
 
+def digest(sample: Points) -> str:
+    """What a report tells of numbers in a file (float32, flat), so that some that have changed are noticed."""
+    return "blake2b-64:" + hashlib.blake2b(memoryview(sample).cast("B"), digest_size=8).hexdigest()
+
+
 def _unreadable(path: str, error: OSError) -> CacheRefusal:
     return CacheRefusal(f'the cache "{path}" cannot be read ({error.strerror}): bake again')
 
@@ -124,22 +131,34 @@ class Writer:
         return writer
 
     @classmethod
-    def reopen(cls, path: str, vertex_count: int, sample_count: int) -> Writer:
-        """Go on after the first sample_count samples; later ones are dropped."""
-        header = read_header(path)
-        end = _HEADER.size + 12 * vertex_count * sample_count
-        if header.vertex_count != vertex_count or os.path.getsize(path) < end:
+    def reopen(
+        cls, path: str, vertex_count: int, first_frame: int, digests: Sequence[str]
+    ) -> Writer:
+        """Go on after the first samples, whose digests are told; later ones are dropped.
+
+        Raises:
+            CacheRefusal: The file does not hold them, or cannot be written.
+        """
+        found = read_header(path)
+        header = Header(vertex_count, float(first_frame), len(digests))
+        if found[:2] != header[:2] or found.sample_count < len(digests):
             raise CacheRefusal(
-                f'the cache "{path}" does not hold the {sample_count} frames of '
+                f'the cache "{path}" does not hold the {len(digests)} frames of '
                 f"{vertex_count} vertices that the checkpoint goes on from: bake from the start"
             )
+        for index, known in enumerate(digests):
+            if digest(read_sample(path, index)) != known:
+                raise CacheRefusal(
+                    f'the cache "{path}" is damaged: frame {first_frame + index} is not as it was baked: '
+                    "bring the file back or bake from the start"
+                )
         try:
             file = open(path, "r+b", buffering=0)  # noqa: SIM115 (closed by `close`)
+            writer = cls(path, file, header)
+            writer._write_header(in_full=True)
+            file.truncate(_HEADER.size + len(digests) * header.sample_bytes)
         except OSError as error:
             raise cannot_write(path, error) from error
-        writer = cls(path, file, header._replace(sample_count=sample_count))
-        writer._write_header()
-        file.truncate(end)
         return writer
 
     @property
@@ -176,13 +195,13 @@ class Writer:
             written = self._file.write(data)
             data = data[written:]
 
-    def _write_header(self) -> None:
+    def _write_header(self, in_full: bool = False) -> None:
         header = self._header
         head = _HEADER.pack(
             _SIGNATURE, 1, header.vertex_count, header.first_frame, 1.0, header.sample_count
         )
         try:
-            if header.sample_count:
+            if header.sample_count and not in_full:
                 self._file.seek(_COUNT_OFFSET)
                 self._write_all(memoryview(head)[_COUNT_OFFSET:])
             else:

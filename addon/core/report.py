@@ -7,6 +7,7 @@ import json
 import math
 import sys
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 from . import whole_file
@@ -32,14 +33,17 @@ class Report:
         self.frames: list[dict[str, Any]] = []
         self.record: dict[str, Any] = {}
 
-    def add(self, certificate: Mapping[str, Any], seconds: float) -> None:
-        """Add the row of a frame: its certificate and the seconds that it took."""
+    def add(
+        self,
+        certificate: Mapping[str, Any],
+        seconds: float,
+        sample: str,
+        numbers: Mapping[str, str] = MappingProxyType({}),
+    ) -> None:
+        """Add the row of a frame: its certificate, the seconds that it took, digests of its sample and of other numbers."""
         row = {"frame": certificate["frame"], "seconds": round(seconds, 6), **certificate}
+        row["sample_hashes"], row["number_hashes"] = [sample], dict(numbers)
         self.frames.append({key: _strict(value) for key, value in row.items()})
-
-    def keep_first(self, rows: int, other: Mapping[str, Any]) -> None:
-        """Take over the first rows of an earlier report, on resume."""
-        self.frames = list(other.get("frames", []))[:rows]
 
     def as_dict(self) -> dict[str, Any]:
         """The whole report."""
@@ -87,8 +91,12 @@ def _joined_row(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     out: dict[str, Any] = {}
     for key in dict.fromkeys(key for row in rows for key in row):
         values = [row[key] for row in rows if key in row]
+        if key == "number_hashes":
+            continue
         if key == "overstretched":
             out[key] = _worst([edge for edges in values for edge in edges or ()])
+        elif key == "sample_hashes":
+            out[key] = [one for own in values for one in own]
         elif key == "overstretched_count":
             out[key] = sum(count or 0 for count in values)
         elif key == "hash":

@@ -8,7 +8,7 @@ import uuid
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
-from . import checkpoint_file, quantity, report, torn, vertex_file
+from . import checkpoint_file, pc2, quantity, report, torn, vertex_file
 from .cache_paths import CacheFiles
 from .checkpoint_file import Checkpoint
 from .pc2 import Writer
@@ -99,8 +99,9 @@ class Store:
             if self._keeps_previous:
                 set_aside(self.files)
             else:
-                for path in self.files.existing():
-                    os.remove(path)
+                for path in _in_turn(self.files):
+                    if os.path.isfile(path):
+                        os.remove(path)
         except OSError as error:
             raise cannot_write(self.files.pc2, error) from error
         self._writer = Writer.create(self.files.pc2, self.plan.point_count, self.plan.first)
@@ -110,25 +111,28 @@ class Store:
             path, count = getattr(self.files, key), self.plan.sizes.count(key)
             self._numbers[key] = vertex_file.Writer.create(path, count)
 
-    def resume(self, sample_count: int) -> None:
-        """Go on after so many samples."""
+    def resume(self, rows: Sequence[Mapping[str, Any]]) -> None:
+        """Go on after the samples that rows of the report tell of."""
         if self.plan.layout:
             torn.restore_corners(self.files.pc2, self.files.tear, self.plan.layout)
-        self._writer = Writer.reopen(self.files.pc2, self.plan.point_count, sample_count)
-        self._resume_numbers(sample_count)
-        self.rows.keep_first(sample_count, report.read(self.files.report))
+        digests = [row["sample_hashes"][0] for row in rows]
+        plan = self.plan
+        self._writer = Writer.reopen(self.files.pc2, plan.point_count, plan.first, digests)
+        self._resume_numbers(rows)
+        self.rows.frames = [dict(row) for row in rows]
 
-    def _resume_numbers(self, sample_count: int) -> None:
+    def _resume_numbers(self, rows: Sequence[Mapping[str, Any]]) -> None:
         """Numbers that were not kept from the start cannot be made up for: what is there goes."""
         for key in (one.key for one in quantity.ALL):
-            path, writer = getattr(self.files, key), None
-            if key in self.plan.keeps:
-                count = self.plan.sizes.count(key)
-                writer = vertex_file.Writer.reopen(path, count, sample_count)
-            if writer is not None:
-                self._numbers[key] = writer
-            elif os.path.isfile(path):
-                os.remove(path)
+            path, count = getattr(self.files, key), self.plan.sizes.count(key)
+            known = [row["number_hashes"].get(key) for row in rows]
+            if key not in self.plan.keeps or not all(known):
+                if os.path.isfile(path):
+                    os.remove(path)
+            elif known:
+                self._numbers[key] = vertex_file.Writer.reopen(path, count, known)
+            else:
+                self._numbers[key] = vertex_file.Writer.create(path, count)
 
     def write(self, frame: int, sample: Sample, seconds: float) -> None:
         """Add a frame, if it is one to keep."""
@@ -137,7 +141,8 @@ class Store:
         for key, writer in self._numbers.items():
             writer.append(sample.numbers[key])
         self._writer.append(sample.positions)
-        self.rows.add(sample.certificate, seconds)
+        hashes = {key: pc2.digest(sample.numbers[key]) for key in self._numbers}
+        self.rows.add(sample.certificate, seconds, pc2.digest(sample.positions), hashes)
 
     def close(self) -> None:
         """Close the files."""
@@ -183,12 +188,12 @@ class Stores:
             Refusal: The checkpoint is damaged, or of other cloths.
         """
         found = [checkpoint_file.read(store.files.checkpoint) for store in self.each]
-        if not any(found):
+        if not any(found) or _was_begun_in_part(found):
             return False
         state = self._common(found)
         simulation.restore(state.state)
-        for store in self.each:
-            store.resume(state.sample_count)
+        for store, rows in zip(self.each, state.rows, strict=True):
+            store.resume(rows)
         self.identity, self.last_frame = state.bake, state.frame
         self._identify()
         return True
@@ -232,7 +237,7 @@ class Stores:
             return
         self._save(simulation)
         for store in self.each[1:]:
-            checkpoint_file.write(store.files.checkpoint, self._checkpoint(b""))
+            checkpoint_file.write(store.files.checkpoint, self._checkpoint(b"", ()))
 
     def save(self, simulation: Saved) -> None:
         """Write reports and checkpoint, if it is time."""
@@ -250,15 +255,15 @@ class Stores:
 
     def _save(self, simulation: Saved) -> None:
         self._write_reports()
-        state = self._checkpoint(simulation.checkpoint())
+        rows = [store.rows.frames for store in self.each]
+        state = self._checkpoint(simulation.checkpoint(), rows)
         checkpoint_file.write(self.each[0].files.checkpoint, state)
         self._saved_at = time.monotonic()
 
-    def _checkpoint(self, state: bytes) -> Checkpoint:
+    def _checkpoint(self, state: bytes, rows: Sequence[Sequence[Mapping[str, Any]]]) -> Checkpoint:
         names = tuple(store.name for store in self.each)
-        return Checkpoint(
-            self.last_frame, self.sample_count, self.plan.digest, state, self.identity, names
-        )
+        place = self.last_frame, self.sample_count
+        return Checkpoint(*place, self.plan.digest, state, self.identity, names, rows)
 
     def _write_reports(self) -> None:
         for store in self.each:
@@ -270,12 +275,24 @@ class Stores:
             store.close()
 
 
+def _was_begun_in_part(found: Sequence[Checkpoint | None]) -> bool:
+    """Whether a bake of several cloths ended while `mark` bound their files to each other: there is nothing to go on from."""
+    first = found[0]
+    return first is not None and first.sample_count <= 1 and None in found
+
+
 def set_aside(files: CacheFiles) -> None:
-    """Keep the files of an earlier bake under the name `previous`."""
-    if not os.path.isfile(files.pc2):
-        return
-    for path, kept in zip(files, files.previous, strict=True):
+    """Keep the files of an earlier bake under the name `previous`; after a kill in between the next call goes on."""
+    pairs = dict(zip(files, files.previous, strict=True))
+    if os.path.isfile(files.pc2):
+        for path, kept in pairs.items():
+            if os.path.isfile(kept) and not os.path.isfile(path):
+                os.remove(kept)
+    for path in _in_turn(files):
         if os.path.isfile(path):
-            os.replace(path, kept)
-        elif os.path.isfile(kept):
-            os.remove(kept)
+            os.replace(path, pairs[path])
+
+
+def _in_turn(files: CacheFiles) -> list[str]:
+    """The files in the order in which an earlier bake leaves: first that from which another would go on."""
+    return [files.checkpoint, *(path for path in files if path != files.checkpoint)]

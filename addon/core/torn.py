@@ -5,14 +5,19 @@ Split Edges makes them of all edges. At the end the same file holds the points o
 Which corner is at which point is asked of Blender, and kept here: in whatever order it splits, nothing is guessed.
 
 Layout, little-endian: a magic line, one line of JSON (the counts), then int32 of the point of each corner, and int32 of both
-ends of each edge that is split.
+ends of each edge that is split, and a digest of all that. While the cache is replaced by one in another layout the file
+holds both, one after the other: that counts which has as many points as the cache, so that a kill at any moment leaves two
+files that fit.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
+from contextlib import suppress
 from functools import lru_cache
+from io import BytesIO
 from typing import Any, NamedTuple
 
 from . import pc2, points, whole_file
@@ -20,6 +25,7 @@ from .points import Points
 from .refusal import CacheRefusal, Refusal, cannot_write
 
 _MAGIC = b"BOUCLE TEAR 1\n"
+_DIGEST_BYTES = 16
 
 
 class Layout(NamedTuple):
@@ -47,8 +53,12 @@ class Layout(NamedTuple):
         return points.take(gathered, self.points)
 
 
-def write(path: str, layout: Layout) -> None:
-    """Replace the file."""
+def write(path: str, *layouts: Layout) -> None:
+    """Replace the file: one layout, or two of different numbers of points."""
+    whole_file.replace(path, b"".join(map(_block, layouts)))
+
+
+def _block(layout: Layout) -> bytes:
     head = {
         "vertices": layout.vertex_count,
         "points": layout.point_count,
@@ -57,40 +67,58 @@ def write(path: str, layout: Layout) -> None:
     }
     parts = [layout.points] if layout.edges is None else [layout.points, layout.edges]
     data = b"".join(memoryview(part).cast("B").tobytes() for part in parts if len(part))
-    whole_file.replace(path, _MAGIC + json.dumps(head).encode() + b"\n" + data)
+    block = _MAGIC + json.dumps(head).encode() + b"\n" + data
+    return block + _digest(block)
+
+
+def _digest(block: bytes | memoryview) -> bytes:
+    return hashlib.blake2b(block, digest_size=_DIGEST_BYTES).digest()
 
 
 def read(path: str) -> Layout | None:
-    """What the file says; None if there is none.
+    """What the file says of the cache beside it; None if there is none.
 
     Raises:
-        CacheRefusal: It is damaged.
+        CacheRefusal: It is damaged, or holds several layouts and the cache cannot be read.
     """
     try:
         found = os.stat(path)
     except OSError:
         return None
-    return _read(path, found.st_mtime_ns, found.st_size)
+    layouts = _read(path, found.st_mtime_ns, found.st_size, found.st_ino)
+    if len(layouts) == 1:
+        return layouts[0]
+    count = pc2.read_header(f"{os.path.splitext(path)[0]}.pc2").vertex_count
+    return next((layout for layout in layouts if layout.point_count == count), layouts[0])
 
 
 @lru_cache(maxsize=16)
-def _read(path: str, _written: int, _size: int) -> Layout:
+def _read(path: str, _written: int, _size: int, _file: int) -> tuple[Layout, ...]:
     """It is asked for at every frame, and read once as long as it stays the same."""
     try:
         with open(path, "rb") as file:
-            magic, line, data = file.readline(len(_MAGIC)), file.readline(1 << 16), file.read()
+            content = file.read()
     except OSError as error:
         raise CacheRefusal(f'"{path}" cannot be read ({error.strerror}): bake again') from error
+    source, layouts = BytesIO(content), []
     try:
-        head = json.loads(line)
-        corners, edges = int(head["corners"]), head["edges"]
-        if magic != _MAGIC or len(data) != 4 * (corners + 2 * int(edges or 0)):
-            raise ValueError(head)
-        split = None if edges is None else points.integers(data[4 * corners :])
-        counts = int(head["vertices"]), int(head["points"])
-        return Layout(*counts, points.integers(data[: 4 * corners]), split)
-    except (ValueError, KeyError, TypeError) as error:
+        while not layouts or source.tell() < len(content):
+            layouts.append(_read_block(source))
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise CacheRefusal(f'"{path}" is damaged: bake again') from error
+    return tuple(layouts)
+
+
+def _read_block(source: BytesIO) -> Layout:
+    start = source.tell()
+    magic, head = source.readline(len(_MAGIC)), json.loads(source.readline(1 << 16))
+    corners, edges = int(head["corners"]), head["edges"]
+    placed, split = (source.read(max(0, size)) for size in (4 * corners, 8 * int(edges or 0)))
+    block = source.getbuffer()[start : source.tell()]
+    if magic != _MAGIC or source.read(_DIGEST_BYTES) != _digest(block):
+        raise ValueError(head)
+    ends = None if edges is None else points.integers(split)
+    return Layout(int(head["vertices"]), int(head["points"]), points.integers(placed), ends)
 
 
 def check(pc2_path: str, tear_path: str, vertices: int, corners: int) -> str:
@@ -113,7 +141,7 @@ def check(pc2_path: str, tear_path: str, vertices: int, corners: int) -> str:
 def arrange(pc2_path: str, tear_path: str, old: Layout, new: Layout) -> bool:
     """Write a cache's points in another layout; False, and nothing changes, if that would join what is apart or gain nothing.
 
-    By the number of points the two can be told from each other.
+    A kill at any moment leaves the cache in one of the two, and a file that fits it.
 
     Raises:
         CacheRefusal: A file cannot be read or written.
@@ -133,13 +161,14 @@ def arrange(pc2_path: str, tear_path: str, old: Layout, new: Layout) -> bool:
                 return False
             writer.append(gathered)
         writer.close()
+        write(tear_path, old, new)
         os.replace(part, pc2_path)
         write(tear_path, new)
     except OSError as error:
         raise cannot_write(pc2_path, error) from error
     finally:
         writer.close()
-        if os.path.isfile(part):
+        with suppress(OSError):  # it has become the cache, or the disk is gone
             os.remove(part)
     return True
 

@@ -9,10 +9,12 @@ from __future__ import annotations
 import os
 import struct
 from array import array
+from collections.abc import Sequence
 from typing import BinaryIO
 
+from .pc2 import digest
 from .points import Points
-from .refusal import cannot_write
+from .refusal import CacheRefusal, cannot_write
 
 _HEADER = struct.Struct("<16sii")
 _MAGIC = {
@@ -77,13 +79,23 @@ class Writer:
         return cls(path, file)
 
     @classmethod
-    def reopen(cls, path: str, vertex_count: int, rows: int) -> Writer | None:
-        """Go on after the first rows; None if they are not all there."""
-        if row_count(path, vertex_count) < rows:
-            return None
+    def reopen(cls, path: str, vertex_count: int, digests: Sequence[str]) -> Writer:
+        """Go on after the first rows, whose digests are told; later ones are dropped.
+
+        Raises:
+            CacheRefusal: The file does not hold them, or cannot be written.
+        """
+        for index, known in enumerate(digests):
+            row = read(path, index, vertex_count)
+            if row is None or digest(row) != known:
+                raise CacheRefusal(
+                    f'"{path}" is missing or damaged at row {index}: bring the file back, do without its attribute '
+                    "or bake from the start"
+                )
         try:
             file = open(path, "r+b", buffering=0)  # noqa: SIM115 (closed by `close`)
-            file.truncate(_HEADER.size + 4 * vertex_count * rows)
+            file.write(_HEADER.pack(_magic(path), vertex_count, 0))
+            file.truncate(_HEADER.size + 4 * vertex_count * len(digests))
             file.seek(0, os.SEEK_END)
         except OSError as error:
             raise cannot_write(path, error) from error

@@ -45,11 +45,11 @@ class BOUCLE_OT_add_cloth(AddObjectHelper, Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     vertices_x: IntProperty(
-        name="Vertices X", description="Vertices along the first axis",
+        name="Vertices X", description="Vertices along the first axis: more fold more finely and take longer",
         default=32, min=2, max=2048, soft_max=256,
     )  # fmt: skip
     vertices_y: IntProperty(
-        name="Vertices Y", description="Vertices along the second axis",
+        name="Vertices Y", description="Vertices along the second axis: more fold more finely and take longer",
         default=32, min=2, max=2048, soft_max=256,
     )  # fmt: skip
     size_x: FloatProperty(

@@ -40,7 +40,7 @@ class BOUCLE_OT_free_bake(_OfBake, Operator):
 
 
 class BOUCLE_OT_restore_bake(_OfBake, Operator):
-    """Swap the bake with the one before it"""
+    """Swap the bake with the one before it, to compare both or to take the last one back"""
 
     bl_idname = Operators.RESTORE_BAKE
     bl_label = "Restore Previous"

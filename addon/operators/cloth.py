@@ -12,7 +12,7 @@ from .polling import cloths_of, has_cloth, has_mesh
 
 
 class BOUCLE_OT_enable(Operator):
-    """Make the active mesh a Boucle cloth"""
+    """Make the active mesh a Boucle cloth, which moves as the animation plays"""
 
     bl_idname = Operators.ENABLE
     bl_label = "Boucle Cloth"
@@ -72,7 +72,7 @@ class BOUCLE_OT_reset(Operator):
 
 
 class BOUCLE_OT_check(Operator):
-    """Look for problems of the cloth and select the vertices that have them"""
+    """Look for what would go wrong with the cloth, tell the cure of each problem, and select the vertices that have them"""
 
     bl_idname = Operators.CHECK
     bl_label = "Check"

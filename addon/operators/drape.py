@@ -27,7 +27,7 @@ class BOUCLE_OT_drape(Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     vertices: IntProperty(
-        name="Vertices", description="Vertices along the sheet's longer side",
+        name="Vertices", description="Vertices along the sheet's longer side: more fold more finely and take longer",
         default=64, min=4, max=1024, soft_max=256,
     )  # fmt: skip
     overhang: FloatProperty(

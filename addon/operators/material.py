@@ -35,7 +35,7 @@ class BOUCLE_OT_add_material(Operator):
     )  # fmt: skip
     scale: FloatProperty(
         name="Scale",
-        description="Size of the yarns as a fraction of the fabric's own (fraction)",
+        description="Size of the yarns as a fraction of the fabric's own (fraction): above 1 coarser, below 1 finer",
         min=0.01, max=100.0, soft_min=0.1, soft_max=10.0, default=1.0, options={"SKIP_SAVE"},
     )  # fmt: skip
 

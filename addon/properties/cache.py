@@ -55,13 +55,13 @@ class CacheProperties:
 
     frame_start: IntProperty(
         name="Start",
-        description="The frame at which the cloth is at rest",
+        description="The frame at which the cloth is at rest, and from which on it moves",
         default=1, min=-1_000_000, max=1_000_000,
         options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     frame_end: IntProperty(
         name="End",
-        description="The last frame that is simulated",
+        description="The last frame that is simulated, live or by Bake",
         default=250, min=-1_000_000, max=1_000_000,
         options=FIXED, override=OVERRIDABLE,
     )  # fmt: skip
@@ -80,7 +80,8 @@ class CacheProperties:
     )  # fmt: skip
     use_live: BoolProperty(
         name="Live",
-        description="Simulate while the animation plays, as long as the cloth is not baked",
+        description="Simulate while the animation plays, as long as the cloth is not baked. Off, playback is fast "
+        "and shows the rest shape",
         default=True, options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     use_strain: BoolProperty(

@@ -10,7 +10,7 @@ from .changes import FIXED, OVERRIDABLE, changed
 def _weight(name: str, what: str) -> object:
     return FloatProperty(
         name=name,
-        description=f"How much the cloth feels of {what} (fraction)",
+        description=f"How much the cloth feels of {what} (fraction): 0 nothing, 1 all, 2 twice of it",
         default=1.0, min=0.0, max=200.0, soft_max=1.0, precision=3, step=1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip

@@ -45,7 +45,7 @@ class OverlayProperties:
     )  # fmt: skip
     overlay_opacity: FloatProperty(
         name="Opacity",
-        description="How much the colours cover the shaded cloth (fraction)",
+        description="How much the colours cover the shaded cloth (fraction): at 1 folds no longer show",
         default=0.85, min=0.0, max=1.0, subtype="FACTOR",
         options=FIXED, override=OVERRIDABLE, update=overlay_redrawn,
     )  # fmt: skip

@@ -10,12 +10,14 @@ class PressureProperties:
 
     use_pressure: BoolProperty(
         name="Pressure",
-        description="Let pressure push the cloth along the normals of its faces",
+        description="Let pressure push the cloth along the normals of its faces: for balloons, cushions, inflated "
+        "coats",
         default=False, options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     uniform_pressure_force: FloatProperty(
         name="Pressure",
-        description="The part of the pressure that does not depend on the volume (N/m²); below 0 it sucks",
+        description="The part of the pressure that does not depend on the volume (N/m²). More inflates further; "
+        "below 0 it sucks",
         default=0.0, min=-1e6, max=1e6, soft_min=-1000.0, soft_max=1000.0, precision=2, step=100,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip

@@ -15,7 +15,8 @@ class SewingProperties:
     )  # fmt: skip
     sewing_force_max: FloatProperty(
         name="Max Sewing Force",
-        description="Largest force (N) of one loose edge; 0 for no limit",
+        description="Largest force (N) of one loose edge; 0 for no limit. Less closes seams more gently, or leaves "
+        "them open where they are pulled",
         default=0.0, min=0.0, max=1e6, soft_max=10.0, precision=3, step=10,
         options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip

@@ -12,7 +12,8 @@ class ShapeProperties:
 
     mass_mode: EnumProperty(
         name="Mass",
-        description="How the mass is given",
+        description="How the mass is given. By Area stays right when you refine the mesh; Per Vertex is that of the "
+        "papers",
         items=(
             ("density", "By Area", "Mass of a square metre of cloth"),
             ("vertex", "Per Vertex", "Mass of every vertex"),
@@ -21,13 +22,14 @@ class ShapeProperties:
     )  # fmt: skip
     density: FloatProperty(
         name="Density",
-        description="Areal density (kg/m²)",
+        description="Areal density (kg/m²): chiffon 0.03, shirting 0.12, denim 0.4. More hangs straighter, stretches "
+        "further and gives way less to the wind",
         default=0.2, min=1e-6, max=1e6, soft_min=0.01, soft_max=5.0, precision=3, step=1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     mass_per_vertex: FloatProperty(
         name="Mass per Vertex",
-        description="Mass of every vertex (kg)",
+        description="Mass of every vertex (kg). On a finer mesh the cloth is heavier; By Area is not",
         default=0.1, min=1e-9, max=1e6, soft_min=1e-4, soft_max=1.0, precision=5, step=1,
         override=OVERRIDABLE, update=changed,
     )  # fmt: skip

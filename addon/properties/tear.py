@@ -24,7 +24,8 @@ class TearProperties:
     )  # fmt: skip
     tear_force: FloatProperty(
         name="Force",
-        description="Tension of an edge beyond which it breaks, less of it on finer meshes; 0 for never (N)",
+        description="Tension of an edge beyond which it breaks (N); 0 for never. A finer mesh has more edges, each "
+        "with less of the load: Stress is the same on any",
         default=0.0, min=0.0, max=1e9, soft_max=100.0, precision=3, step=10,
         options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip
@@ -37,13 +38,14 @@ class TearProperties:
     )  # fmt: skip
     tear_noise: FloatProperty(
         name="Noise",
-        description="By which part the thresholds differ from edge to edge, up and down (fraction)",
+        description="By which part the thresholds differ from edge to edge, up and down (fraction). More makes tears "
+        "more ragged",
         default=0.0, min=0.0, max=1.0, subtype="FACTOR", precision=3,
         options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     tear_seed: IntProperty(
         name="Seed",
-        description="Chooses the random numbers of the noise",
+        description="Chooses the random numbers of the noise: another number tears elsewhere",
         default=0, min=0, max=2_000_000_000, options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip
     tear_strength_group: StringProperty(

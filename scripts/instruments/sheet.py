@@ -279,17 +279,7 @@ def numbers(sheet: Sheet) -> dict[str, Any]:
         "fabric": sheet.fabric.preset,
         "changes": dict(sheet.fabric.changes),
         "order": sheet.order.words(),
-        "tensile": {
-            way: {
-                "stiffness": one.stiffness,
-                "expected": one.expected,
-                "poisson": one.poisson,
-                "expected_poisson": one.expected_poisson,
-                "extension_percent": {f"E{g}": 100.0 * e for g, e in one.extensions.items()},
-                "curve": [[pull.clamps, pull.marks, pull.tension] for pull in one.pulls],
-            }
-            for way, one in sheet.tensile.items()
-        },
+        "tensile": {way: tensile_numbers(one) for way, one in sheet.tensile.items()},
         "shear": {
             way: {
                 "stiffness": one.stiffness,
@@ -333,4 +323,16 @@ def numbers(sheet: Sheet) -> dict[str, Any]:
             for one in sheet.drapes
         ],
         "drape_band_percent": sheet.fabric.band,
+    }
+
+
+def tensile_numbers(read: Tensile) -> dict[str, Any]:
+    """All numbers of one strip."""
+    return {
+        "stiffness": read.stiffness,
+        "expected": read.expected,
+        "poisson": read.poisson,
+        "expected_poisson": read.expected_poisson,
+        "extension_percent": {f"E{g}": 100.0 * e for g, e in read.extensions.items()},
+        "curve": [[pull.clamps, pull.marks, pull.tension] for pull in read.pulls],
     }

@@ -1,6 +1,7 @@
 """The bake's generator with the real solver: whatever stops it, what is there is right."""
 
 import json
+import os
 from array import array
 
 import boucle_core
@@ -248,6 +249,76 @@ def test_an_earlier_bake_is_set_aside_or_removed(whole):
     assert sorted(p.name for p in whole.iterdir() if "previous" not in p.name) == [
         "a.checkpoint", "a.json", "a.pc2",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize("calls", range(1, 8))
+def test_a_kill_while_an_earlier_bake_is_set_aside_loses_nothing(whole, monkeypatch, calls):
+    """Of one that was set aside, or is still in its place, all files are of the same bake: those of another are gone."""
+    pull(solver(), store(whole))
+    (whole / "a.previous.strain").write_text("of the bake before")
+    kept = {name: (whole / name).read_bytes() for name in ("a.pc2", "a.json", "a.checkpoint")}
+    real, left = {"replace": os.replace, "remove": os.remove}, [calls]
+
+    def call(name, *paths):
+        left[0] -= 1
+        if left[0] <= 0:
+            raise KeyboardInterrupt
+        real[name](*paths)
+
+    with monkeypatch.context() as patch:
+        for name in real:
+            patch.setattr(os, name, lambda *paths, name=name: call(name, *paths))
+        if calls < 5:
+            with pytest.raises(KeyboardInterrupt):
+                store(whole).begin()
+        else:
+            store(whole).begin()
+    assert pull(solver(), store(whole), resume=True) in ([], list(range(2, END + 1)))
+    assert (whole / "a.pc2").read_bytes() == kept["a.pc2"]
+    if calls in (3, 4):
+        assert (whole / "a.previous.pc2").read_bytes() == kept["a.pc2"]
+        assert (whole / "a.previous.json").read_bytes() == kept["a.json"]
+    if calls > 1:
+        assert not (whole / "a.previous.strain").exists()
+
+
+def test_a_report_that_was_lost_or_damaged_comes_back_with_the_next_frames(whole, tmp_path):
+    folder = tmp_path / "part"
+    for damage in (lambda path: path.unlink(), lambda path: path.write_bytes(b"{\x00")):
+        pull(solver(), store(folder), steps=4)
+        damage(folder / "a.json")
+        pull(solver(), store(folder), resume=True)
+        reports = [json.loads((f / "a.json").read_text()) for f in (folder, whole)]
+        resumed, expected = ([row["hash"] for row in each["frames"]] for each in reports)
+        assert resumed == expected
+
+
+def test_a_changed_sample_is_not_gone_on_from(tmp_path):
+    pull(solver(), store(tmp_path), steps=4)
+    data = bytearray((tmp_path / "a.pc2").read_bytes())
+    data[32 + 12 * SIDE**2 * 2 + 7] ^= 1
+    (tmp_path / "a.pc2").write_bytes(data)
+    with pytest.raises(
+        Refusal, match="frame 3 is not as it was baked: bring the file back or bake"
+    ):
+        pull(solver(), store(tmp_path), resume=True)
+    assert (tmp_path / "a.pc2").read_bytes() == data
+
+
+@pytest.mark.parametrize("damage", [lambda data: data[:-1], lambda data: data[:-1] + b"?", None])
+def test_changed_or_missing_strain_is_told_and_can_be_done_without(tmp_path, damage):
+    pull(solver(), store(tmp_path, keeps=("strain",)), steps=4)
+    path = tmp_path / "a.strain"
+    if damage:
+        path.write_bytes(damage(path.read_bytes()))
+    else:
+        path.unlink()
+    with pytest.raises(
+        CacheRefusal, match=r"damaged at row .: bring the file back, do without its"
+    ):
+        pull(solver(), store(tmp_path, keeps=("strain",)), resume=True)
+    assert pull(solver(), store(tmp_path), resume=True)[-1] == END
+    assert not path.exists()
 
 
 def test_divergence_keeps_the_frames_and_a_checkpoint_before_it(tmp_path):

@@ -5,7 +5,7 @@ from array import array
 
 import boucle_core
 import pytest
-from boucle_addon.core import bake, joint, pc2, points, report, scene_json
+from boucle_addon.core import bake, checkpoint_file, joint, pc2, points, report, scene_json
 from boucle_addon.core.bake import Moment, Pose
 from boucle_addon.core.cache_paths import files_of
 from boucle_addon.core.refusal import Refusal
@@ -133,6 +133,19 @@ def test_stopped_after_any_step_all_go_on_bit_equal(whole, tmp_path, steps):
         assert pc2.read_header(str(folder / f"{name}.pc2")).sample_count == steps + 1
     assert pull(folder, resume=True) == END - 1 - steps
     assert contents(folder) == contents(whole)
+
+
+def test_a_kill_while_the_files_are_bound_to_each_other_means_a_new_start(whole, tmp_path):
+    folder = tmp_path / "part"
+    pull(folder, steps=1)
+    (folder / "upper.checkpoint").unlink()
+    state = checkpoint_file.read(str(folder / "lower.checkpoint"))
+    rows = [each[:1] for each in state.rows]
+    begun = state._replace(frame=1, sample_count=1, rows=rows)
+    checkpoint_file.write(str(folder / "lower.checkpoint"), begun)
+    assert pull(folder, resume=True) == END - 1
+    for name, content in contents(whole).items():
+        assert (folder / name).read_bytes() == content
 
 
 def test_after_a_kill_between_the_files_of_a_frame_the_checkpoint_counts(whole, tmp_path):

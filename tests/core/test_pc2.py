@@ -64,9 +64,13 @@ def test_a_sample_that_does_not_fit_the_disk_leaves_the_ones_before(path):
     assert pc2.check(path, 2) == ""
 
 
+def digests(*values):
+    return [pc2.digest(sample(value)) for value in values]
+
+
 def test_going_on_drops_later_samples(path):
     written(path, 5).close()
-    writer = pc2.Writer.reopen(path, 2, 3)
+    writer = pc2.Writer.reopen(path, 2, -3, digests(0.0, 1.0, 2.0))
     writer.append(sample(7.0))
     writer.close()
     assert pc2.read_header(path) == (2, -3.0, 4)
@@ -75,9 +79,37 @@ def test_going_on_drops_later_samples(path):
 
 def test_going_on_from_too_short_or_another_file_is_refused(path):
     written(path, 2).close()
-    for vertices, count in ((2, 3), (4, 1)):
+    for vertices, first, count in ((2, -3, 3), (4, -3, 1), (2, 1, 1)):
         with pytest.raises(CacheRefusal, match="bake from the start"):
-            pc2.Writer.reopen(path, vertices, count)
+            pc2.Writer.reopen(path, vertices, first, digests(0.0, 1.0, 2.0)[:count])
+
+
+def test_a_file_with_a_bit_changed_or_cut_off_is_refused_or_mended(path):
+    written(path, 3).close()
+    longer = Path(path).read_bytes()
+    count = 32 + 2 * 24
+    whole = longer[:28] + b"\2" + longer[29:count]
+    for bit in range(8 * len(longer)):
+        changed = bytearray(longer)
+        changed[bit // 8] ^= 1 << bit % 8
+        Path(path).write_bytes(changed)
+        try:
+            pc2.Writer.reopen(path, 2, -3, digests(0.0, 1.0)).close()
+        except CacheRefusal:
+            assert bit // 8 < count
+        else:
+            assert Path(path).read_bytes() == whole
+    for length in range(len(longer)):
+        Path(path).write_bytes(longer[:length])
+        try:
+            pc2.Writer.reopen(path, 2, -3, digests(0.0, 1.0)).close()
+        except CacheRefusal:
+            assert length < count
+        else:
+            assert length >= count and Path(path).read_bytes() == whole
+    Path(path).write_bytes(longer[: count - 1] + b"x" + longer[count:])
+    with pytest.raises(CacheRefusal, match="frame -2 is not as it was baked"):
+        pc2.Writer.reopen(path, 2, -3, digests(0.0, 1.0))
 
 
 def test_a_sample_of_another_size_is_refused(path):

@@ -16,7 +16,7 @@ def row(frame, **values):
 def made(name, rows):
     out = Report("0.1.0", "a.blend", 2, {"name": name, "vertices": 4, "triangles": 2, "springs": 6})
     for values in rows:
-        out.add(values, 0.25)
+        out.add(values, 0.25, f"of {name} at {values['frame']}")
     return out
 
 
@@ -30,15 +30,6 @@ def test_a_report_is_strict_json_with_the_contracts_keys(tmp_path):
     assert content["frames"][1]["kinetic_energy"] is None
     assert content["frames"][0]["seconds"] == 0.25
     assert content["peak_memory_bytes"] > 1_000_000
-
-
-def test_a_resumed_report_keeps_the_first_rows():
-    first = made("A", [row(1), row(2), row(3)]).as_dict()
-    second = made("A", [])
-    second.keep_first(2, first)
-    second.add(row(3), 0.5)
-    assert [r["frame"] for r in second.as_dict()["frames"]] == [1, 2, 3]
-    assert second.as_dict()["total_seconds"] == 1.0
 
 
 def test_a_missing_or_damaged_report_is_empty(tmp_path):
@@ -55,6 +46,7 @@ def test_reports_of_several_cloths_are_joined_frame_by_frame():
     assert [cloth["name"] for cloth in both["cloths"]] == ["A", "B"]
     assert [r["frame"] for r in both["frames"]] == [1, 2, 3]
     middle = both["frames"][1]
+    assert middle["sample_hashes"] == ["of A at 2", "of B at 2"]
     assert middle["substeps"] == 9 and middle["kinetic_energy"] == 2.0
     assert middle["max_strain"] == 0.1 and middle["intersections"] is None
     assert middle["hash"].startswith("blake2b-64:") and both["frames"][0]["hash"] == "xxh3-64:0"

@@ -1,5 +1,6 @@
 """The layout of torn caches: its file, the cache in another layout and back, and what is refused."""
 
+import os
 from array import array
 from pathlib import Path
 
@@ -60,6 +61,8 @@ def test_a_layout_comes_back_from_its_file(tmp_path):
         b"BOUCLE TEAR 1\n{}\n",
         b"x" * 300,
         Path(path).read_bytes()[:-1],
+        Path(path).read_bytes() * 2 + b"x",
+        Path(path).read_bytes().replace(b'"points": 10', b'"points": 11'),
     ):
         (tmp_path / "b.tear").write_bytes(damaged)
         with pytest.raises(Refusal, match=r"b\.tear\" is damaged"):
@@ -79,7 +82,8 @@ def test_a_cache_is_arranged_without_loss_and_never_joined_where_it_is_apart(tmp
     assert lists(path) == before and torn.read(tear).edges is None
     apart = list(pc2.read_sample(str(path), 1))
     apart[3 * 8] += 1.0  # the first face's corner at vertex 1
-    writer = pc2.Writer.reopen(str(path), 12, 2)
+    known = [pc2.digest(array("f", positions)) for positions in before]
+    writer = pc2.Writer.reopen(str(path), 12, 4, known)
     writer.append(array("f", apart))
     writer.close()
     assert torn.is_apart(array("f", apart), FULL, CORNERS)
@@ -94,6 +98,54 @@ def test_a_cache_is_arranged_without_loss_and_never_joined_where_it_is_apart(tmp
     assert pc2.read_header(str(path)).first_frame == 4
     torn.restore_corners(str(path), tear, FULL)
     assert lists(path) == [*before, apart]
+
+
+class Killed(BaseException):
+    """Ends a process at this point."""
+
+
+def dying(monkeypatch, calls):
+    """Die before a file is replaced when so many have been."""
+    replace, left = os.replace, [calls]
+
+    def call(*paths):
+        left[0] -= 1
+        if left[0] < 0:
+            raise Killed
+        replace(*paths)
+
+    monkeypatch.setattr(os, "replace", call)
+
+
+def test_a_cache_that_is_killed_while_it_is_arranged_fits_its_layout_at_every_moment(
+    tmp_path, monkeypatch
+):
+    moved = [value + 0.1 for value in REST]
+    shown = [list(array("f", REST)), list(array("f", moved))]
+    for old, new in ((FULL, WHOLE), (FULL, TORN), (TORN, FULL)):
+        for calls in range(4):
+            folder = tmp_path / f"{old.point_count} {new.point_count} {calls}"
+            folder.mkdir()
+            path, tear = folder / "a.pc2", str(folder / "a.tear")
+            cache(path, old, [REST, moved])
+            torn.write(tear, old)
+            with monkeypatch.context() as patch:
+                dying(patch, calls)
+                try:
+                    finished = torn.arrange(str(path), tear, old, new)
+                except Killed:
+                    finished = False
+            assert finished == (calls == 3), "it writes three files"
+            assert torn.check(str(path), tear, 8, 12) == ""
+            found = torn.read(tear)
+            assert list(found.points) == list((new if calls > 1 else old).points)
+            corners = [found.spread(array("f", sample)) for sample in lists(path)]
+            assert [list(points.scatter(c, CORNERS, 8)) for c in corners] == shown
+            torn.restore_corners(str(path), tear, FULL)
+            assert list(torn.read(tear).points) == list(FULL.points)
+            assert [list(FULL.spread(array("f", sample))) for sample in lists(path)] == [
+                list(c) for c in corners
+            ]
 
 
 def test_caches_that_do_not_fit_say_so(tmp_path):

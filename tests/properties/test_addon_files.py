@@ -1,5 +1,6 @@
 """Whatever stands in a file of the add-on, it is read, or refused in one line."""
 
+import hashlib
 import json
 import struct
 
@@ -64,7 +65,9 @@ def test_any_point_cache_is_read_or_refused(folder, content, index):
     if sample is not None:
         assert len(sample) == 3 * header.vertex_count
     assert isinstance(pc2.check(str(path), 2), str)
-    writer = refused(pc2.Writer.reopen, str(path), 2, 1)
+    first = int(header.first_frame) if header else 1
+    known = [pc2.digest(content[32:56])]
+    writer = refused(pc2.Writer.reopen, str(path), 2, first, known)
     if writer is not None:
         writer.close()
         assert pc2.read_header(str(path)).sample_count == 1
@@ -75,23 +78,29 @@ def test_any_point_cache_is_read_or_refused(folder, content, index):
         st.binary(max_size=100),
         deep,
         st.fixed_dictionaries(
-            dict.fromkeys(("frame", "samples", "digest", "length", "bake", "cloths"), values)
+            dict.fromkeys(
+                ("frame", "samples", "digest", "length", "bake", "cloths", "rows"), values
+            )
         ).map(lambda head: json.dumps({**head, "length": 3}).encode() + b"\nabc"),
         values.map(lambda value: json.dumps(value).encode() + b"\nabc"),
     ),
     st.booleans(),
 )
 @example(
-    b'{"frame": 1e999, "samples": 1, "digest": "", "length": 3, "bake": "", "cloths": []}\nabc',
+    b'{"frame": 1e999, "samples": 1, "digest": "", "length": 3, "bake": "", "cloths": [], "rows": []}\nabc',
     True,
 )
 def test_any_checkpoint_is_read_or_refused(folder, content, has_magic):
     path = folder / "any.checkpoint"
-    path.write_bytes((b"BOUCLE CHECKPOINT 1\n" if has_magic else b"") + content)
+    if has_magic:  # and what tells that nothing has changed
+        content = b"BOUCLE CHECKPOINT 2\n" + content
+        content += hashlib.blake2b(content, digest_size=16).digest()
+    path.write_bytes(content)
     found = refused(checkpoint_file.read, str(path))
     if found is not None:
         assert isinstance(found.frame, int)
         assert isinstance(found.state, bytes)
+        assert all(isinstance(row, dict) for rows in found.rows for row in rows)
 
 
 @given(

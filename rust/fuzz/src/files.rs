@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use boucle_geometry::Mesh;
 use boucle_scene::description::UpAxis;
 use boucle_scene::{Scene, obj as wavefront, pc2 as cache, source};
+use xxhash_rust::xxh3::xxh3_64;
 
 use crate::demands::{accepted, finite};
 
@@ -72,7 +73,11 @@ pub(crate) fn pc2(bytes: &[u8]) {
         assert_eq!(numbers.len() as u64, wanted);
         assert!(4 * wanted <= bytes.len() as u64);
     }
-    if let Some(mut writer) = accepted(cache::Writer::resume(&file.path, 3, 1, 2)) {
+    // Samples of three points that are as they were written, as far as there are two.
+    let hashes = bytes.get(32..).unwrap_or_default().chunks_exact(36).take(2).map(xxh3_64);
+    let mut hashes: Vec<u64> = hashes.collect();
+    hashes.resize(2, 0);
+    if let Some(mut writer) = accepted(cache::Writer::resume(&file.path, 3, 1, &hashes)) {
         writer.append(&[boucle_geometry::Vector::zeros(); 3]).expect("there is room");
         let (header, _) = cache::read(&file.path).expect("a valid prefix");
         assert_eq!(header.sample_count, 3);

@@ -3,11 +3,12 @@
 //! - `boundary`: the one place where errors, panics and threads meet the interpreter
 //! - `buffers`: arrays in and out, by the buffer protocol
 //! - `meshes`: meshes of cloths and colliders out of such arrays
-//! - `simulation`: the class `Simulation`; `access`: what is inside it
+//! - `simulation`: the class `Simulation`; `access`: what is inside it; `springs`, `corner_numbers`: its longer answers
 //! - `interrupter`: the class `Interrupter`
 //! - `bake`: the function `bake`; `batch`: the function `run_batch`
 //! - `presets`: the functions `fabric_presets` and `fabric_springs`
-//! - `geometry`: distances, collisions and intersections of many features at once
+//! - `geometry`: distances, collisions and intersections of many features at once, for tests
+//! - `faults`: a fault on purpose, for tests
 //!
 //! The surface is written down in `boucle_core.pyi`. Where the environment holds `BOUCLE_TEST_HOOKS` when the module is
 //! imported, it has one function more, `_panic_for_tests(simulation=None)`, which panics inside the boundary as a fault of

@@ -1,7 +1,9 @@
 //! From a scene and rest meshes to a simulation whose pins and colliders follow the scene.
 
 use boucle_geometry::{Mesh, Vector};
-use boucle_solver::{Certificate, Cloth, Fabric, Settings, Simulation, Tailoring, Warp};
+use boucle_solver::{
+    Certificate, Cloth, Fabric, Field, Settings, Simulation, Tailoring, Warp, Water, Wind,
+};
 
 use crate::collider::{ColliderTrack, RestCollider};
 use crate::description::{
@@ -50,18 +52,7 @@ impl Assembly {
         threads: usize,
     ) -> Result<Self> {
         limits::threads(threads)?;
-        if meshes.len() != scene.cloth.len() {
-            return Err(Error::refuse("meshes", meshes.len(), &format!("{}", scene.cloth.len())));
-        }
-        if colliders.len() != scene.collider.len() {
-            let accepted = format!("{}", scene.collider.len());
-            return Err(Error::refuse("colliders", colliders.len(), &accepted));
-        }
-        let mut counts = [0; 2];
-        for (description, rest) in scene.cloth.iter().zip(&meshes) {
-            counts[usize::from(description.model == Model::Fabric)] += rest.positions.len() as u64;
-        }
-        limits::memory(counts)?;
+        check_sizes(scene, &meshes, &colliders)?;
         let mut tracks = Vec::with_capacity(meshes.len());
         let mut cloths = Vec::with_capacity(meshes.len());
         let mut shape_tracks = Vec::with_capacity(meshes.len());
@@ -82,14 +73,7 @@ impl Assembly {
             .zip(colliders)
             .map(|(description, rest)| ColliderTrack::new(description, rest, first_frame))
             .unzip();
-        let names: Vec<&str> = scene.cloth.iter().map(|cloth| cloth.name.as_str()).collect();
-        let (mut winds, mut fields, mut water) = (Vec::new(), Vec::new(), None);
-        for (index, force) in scene.force.iter().enumerate() {
-            let at = format!("force.{index}");
-            winds.extend(force.wind(&at, &names)?);
-            fields.extend(force.field(&at)?);
-            water = water.or(force.water(&at)?);
-        }
+        let Forces { winds, fields, water } = Forces::new(scene)?;
         let mut simulation = Simulation::with_colliders(
             cloths,
             colliders,
@@ -159,6 +143,43 @@ impl Assembly {
     }
 }
 
+/// Refuses other numbers of meshes and colliders than the scene has, and cloth for which there is no memory.
+fn check_sizes(scene: &Scene, meshes: &[RestMesh], colliders: &[RestCollider]) -> Result<()> {
+    let (cloth_count, collider_count) = (scene.cloth.len(), scene.collider.len());
+    if meshes.len() != cloth_count {
+        return Err(Error::refuse("meshes", meshes.len(), &format!("{cloth_count}")));
+    }
+    if colliders.len() != collider_count {
+        return Err(Error::refuse("colliders", colliders.len(), &format!("{collider_count}")));
+    }
+    let mut counts = [0; 2];
+    for (description, rest) in scene.cloth.iter().zip(meshes) {
+        counts[usize::from(description.model == Model::Fabric)] += rest.positions.len() as u64;
+    }
+    limits::memory(counts)
+}
+
+/// The `[[force]]` of a scene, by what the solver calls them.
+struct Forces {
+    winds: Vec<Wind>,
+    fields: Vec<Field>,
+    water: Option<Water>,
+}
+
+impl Forces {
+    fn new(scene: &Scene) -> Result<Self> {
+        let names: Vec<&str> = scene.cloth.iter().map(|cloth| cloth.name.as_str()).collect();
+        let mut forces = Self { winds: Vec::new(), fields: Vec::new(), water: None };
+        for (index, force) in scene.force.iter().enumerate() {
+            let at = format!("force.{index}");
+            forces.winds.extend(force.wind(&at, &names)?);
+            forces.fields.extend(force.field(&at)?);
+            forces.water = forces.water.or(force.water(&at)?);
+        }
+        Ok(forces)
+    }
+}
+
 /// The word by which scenes and reports call an integrator.
 #[must_use]
 pub fn integrator_word(scene: &Scene) -> &'static str {
@@ -201,6 +222,28 @@ fn cloth(
         rest.positions.len(),
         &format!("{at}.collision"),
     )?;
+    let cloth = plain_cloth(description, rest, pins, at)?;
+    let pressure = description.pressure.as_ref();
+    let pressure = pressure.map(|pressure| pressure.pressure(scene.scene.frames[0]));
+    let (pin_material, bulk) = (description.pin_material(), description.water.bulk());
+    let vertices = cloth.positions.len();
+    let tear = description.tear.tear(
+        &scene.tear,
+        description.named_fabric(),
+        scene.scene.frames[0],
+        vertices,
+        &format!("{at}.tear"),
+    )?;
+    Ok(Cloth { collision, pin_weights, pin_material, pressure, bulk, tear, ..cloth })
+}
+
+/// A cloth of a mesh and a material, with its seams.
+fn plain_cloth(
+    description: &ClothDescription,
+    rest: RestMesh,
+    pins: Vec<u32>,
+    at: &str,
+) -> Result<Cloth> {
     let mass = description.mass();
     let (fabric, material) = match description.model {
         Model::Springs => {
@@ -231,22 +274,10 @@ fn cloth(
             Some(sewing) => cloth.sewn(sewing.sewing(&loose_edges)),
             None => Ok(cloth),
         });
-    let cloth = made.map_err(|error| match error {
+    made.map_err(|error| match error {
         boucle_solver::Error::OutOfDomain { .. } => Error::input(format!("{at}.{error}")),
         other => Error::from(other),
-    })?;
-    let pressure = description.pressure.as_ref();
-    let pressure = pressure.map(|pressure| pressure.pressure(scene.scene.frames[0]));
-    let (pin_material, bulk) = (description.pin_material(), description.water.bulk());
-    let vertices = cloth.positions.len();
-    let tear = description.tear.tear(
-        &scene.tear,
-        description.named_fabric(),
-        scene.scene.frames[0],
-        vertices,
-        &format!("{at}.tear"),
-    )?;
-    Ok(Cloth { collision, pin_weights, pin_material, pressure, bulk, tear, ..cloth })
+    })
 }
 
 /// A fabric whose warp follows the UV coordinates of its mesh, if it is to.

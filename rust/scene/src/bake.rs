@@ -2,7 +2,8 @@
 //!
 //! After each frame, in this order: the data of every cache, the caches' sample counts, the report, and (every two seconds
 //! and at the end) the checkpoint. So the checkpoint is never ahead of what it goes on from, and a resumed bake first cuts
-//! caches and report back to it. What comes out is bit-equal to a bake that never stopped.
+//! caches and report back to it. What comes out is bit-equal to a bake that never stopped: samples that are gone on from are
+//! held against the hashes that the checkpoint's rows have of them, and everything else is written anew.
 
 mod folder;
 mod torn;
@@ -123,7 +124,7 @@ impl Bake {
         let (folder, report, fresh) = if let Some(old) = old {
             let restored = assembly.simulation.restore(&old.simulation);
             restored.map_err(|error| Error::from(error).within(&folder.checkpoint_place()))?;
-            let folder = folder.take_up(&assembly, first_kept, old.rows.len())?;
+            let folder = folder.take_up(&assembly, first_kept, &old.rows)?;
             (folder, Report::new(&head, old.rows, old.seconds), None)
         } else {
             let report = Report::new(&head, Vec::new(), 0.0);
@@ -180,13 +181,11 @@ impl Bake {
     fn keep(&mut self, certificate: &Certificate) -> Result<Progress> {
         let frame = certificate.frame;
         let is_kept = frame >= self.first_kept;
-        if is_kept {
-            self.folder.append(&self.assembly)?;
-        }
+        let samples = if is_kept { self.folder.append(&self.assembly)? } else { Vec::new() };
         let seconds = self.frame_began.elapsed().as_secs_f64();
         self.report.spend(seconds);
         if is_kept {
-            let row = FrameRow::new(certificate, Some(seconds));
+            let row = FrameRow::new(certificate, Some(seconds)).with_samples(&samples);
             self.report.push(&row.naming_overstretched(&self.assembly.simulation));
             if let Err(error) = self.folder.write_report(&self.report) {
                 self.report.pop();

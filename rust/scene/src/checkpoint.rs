@@ -19,7 +19,7 @@ use crate::error::{Error, Result};
 pub const FILE_NAME: &str = "boucle.checkpoint";
 
 const MAGIC: &[u8; 8] = b"BOUCLECP";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// A bake as it stood after a frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,14 +84,16 @@ impl Checkpoint {
 
     fn parse(bytes: &[u8]) -> std::result::Result<Self, &'static str> {
         const DAMAGED: &str = "is damaged";
-        let (body, sum) = bytes.split_last_chunk::<8>().ok_or(DAMAGED)?;
-        if !body.starts_with(MAGIC) || xxh3_64(body) != u64::from_le_bytes(*sum) {
-            return Err(DAMAGED);
-        }
-        let mut rest = &body[MAGIC.len()..];
+        // Whatever stands behind it is the other version's own.
+        let mut rest = bytes.strip_prefix(MAGIC).ok_or(DAMAGED)?;
         if u32::from_le_bytes(take(&mut rest).ok_or(DAMAGED)?) != VERSION {
             return Err("is of another version");
         }
+        let (body, sum) = rest.split_last_chunk::<8>().ok_or(DAMAGED)?;
+        if xxh3_64(&bytes[..bytes.len() - sum.len()]) != u64::from_le_bytes(*sum) {
+            return Err(DAMAGED);
+        }
+        let mut rest = body;
         let digest = u128::from_le_bytes(take(&mut rest).ok_or(DAMAGED)?);
         let frame = i32::from_le_bytes(take(&mut rest).ok_or(DAMAGED)?);
         let seconds = f64::from_le_bytes(take(&mut rest).ok_or(DAMAGED)?);
@@ -150,6 +152,16 @@ mod tests {
         let error = Checkpoint::read(&path, 8).expect_err("another digest");
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("another scene"), "{error}");
+    }
+
+    #[test]
+    fn a_checkpoint_of_another_version_is_told_as_such() {
+        for version in [0, VERSION - 1, VERSION + 1, u32::MAX] {
+            let mut bytes = checkpoint(2).bytes();
+            bytes[8..12].copy_from_slice(&version.to_le_bytes());
+            bytes.truncate(60);
+            assert_eq!(Checkpoint::parse(&bytes), Err("is of another version"));
+        }
     }
 
     #[test]

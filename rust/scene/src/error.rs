@@ -50,7 +50,12 @@ impl Error {
 
     /// A file of the result that cannot be written or read.
     pub(crate) fn cache(path: &Path, action: &str, error: &std::io::Error) -> Self {
-        Self::Cache(format!("{} cannot be {action}: {error}", path.display()))
+        let cure = if action == "read" {
+            "accepted: the file as the bake left it, or a bake without --resume"
+        } else {
+            "free disk space or allow writing there, then --resume goes on"
+        };
+        Self::Cache(format!("{} cannot be {action}: {error}; {cure}", path.display()))
     }
 
     /// The same refusal with the name of the input it was found in before it.

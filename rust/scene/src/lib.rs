@@ -6,6 +6,19 @@
 //!               and checked)     simulation)
 //! ```
 //! Every refusal is an [`Error`] of one line that names the file, the key, the value and what is accepted.
+//!
+//! In the order in which a bake goes:
+//!
+//! 1. [`source`] reads the scene file and the meshes that it names ([`obj`], [`grid`]); [`overrides`] change its keys,
+//! 2. [`description`] types and checks them, table by table; its pages are the reference of the scene file,
+//! 3. [`assembly`] makes the simulation: [`preset`] and [`lattice`] know the named fabrics, [`pins`], [`shape`] and [`collider`] what
+//!    moves from frame to frame, [`samples`] what deforms,
+//! 4. [`bake`] goes frame by frame and writes [`pc2`], [`report`] and [`mod@checkpoint`], each whole at any moment ([`atomic`]);
+//!    [`batch`] runs many scenes without files.
+//!
+//! [`limits`] says how large anything may be. Nothing here knows Python or Blender.
+
+#![allow(rustdoc::private_intra_doc_links, reason = "the lecture is built with private items")]
 
 pub mod assembly;
 mod atomic;

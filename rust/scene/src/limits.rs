@@ -3,6 +3,7 @@
 //! Every size is checked before anything is allocated for it.
 
 use std::ops::RangeInclusive;
+use std::path::Path;
 
 use crate::error::{Error, Result};
 
@@ -73,8 +74,10 @@ pub(crate) fn vertices(key: &str, count: u64) -> Result<()> {
 /// [`Error::Input`] with the memory that they need.
 pub(crate) fn memory(vertices: [u64; 2]) -> Result<()> {
     let bytes: u64 = vertices.iter().zip(VERTEX_BYTES).map(|(count, each)| count * each).sum();
+    let is_allowed =
+        most_of_container(Path::new("/sys/fs/cgroup")).is_none_or(|most| bytes <= most);
     let asked = usize::try_from(bytes).ok().map(|bytes| Vec::<u8>::new().try_reserve_exact(bytes));
-    if let Some(Ok(())) = asked {
+    if is_allowed && asked.is_some_and(|asked| asked.is_ok()) {
         return Ok(());
     }
     let count: u64 = vertices.iter().sum();
@@ -83,6 +86,14 @@ pub(crate) fn memory(vertices: [u64; 2]) -> Result<()> {
         "the cloths together: {count} vertices need about {gigabytes:.1} GB of memory, which the \
          system does not give; accepted: fewer vertices, or a machine with more memory"
     )))
+}
+
+/// Memory (bytes) that the container in which we run may take, where control groups limit it: the system promises more than
+/// that, and ends whoever takes it.
+fn most_of_container(groups: &Path) -> Option<u64> {
+    let files = ["memory.max", "memory/memory.limit_in_bytes"];
+    let read = |file| std::fs::read_to_string(groups.join(file)).ok();
+    files.into_iter().find_map(read)?.trim().parse().ok()
 }
 
 /// Refuses more worker threads than make sense.
@@ -114,6 +125,21 @@ mod tests {
         assert_eq!(memory([4, 4]), Ok(()));
         let error = memory([0, 1 << 49]).expect_err("millions of gigabytes").to_string();
         assert!(error.contains("562949953421312 vertices need about 6755399441.1 GB"), "{error}");
+    }
+
+    #[test]
+    fn a_container_tells_how_much_memory_it_may_take() {
+        let folder = tempfile::tempdir().expect("a folder");
+        assert_eq!(most_of_container(folder.path()), None);
+        std::fs::create_dir(folder.path().join("memory")).expect("there is room");
+        let old = folder.path().join("memory/memory.limit_in_bytes");
+        std::fs::write(old, "9223372036854771712\n").expect("there is room");
+        assert_eq!(most_of_container(folder.path()), Some(9_223_372_036_854_771_712));
+        let new = folder.path().join("memory.max");
+        std::fs::write(&new, "max\n").expect("there is room");
+        assert_eq!(most_of_container(folder.path()), None);
+        std::fs::write(new, "2147483648\n").expect("there is room");
+        assert_eq!(most_of_container(folder.path()), Some(2 << 30));
     }
 
     #[test]

@@ -13,10 +13,11 @@
 //! number of samples after it.
 
 use std::fs::{File, OpenOptions};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::{BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use boucle_geometry::Vector;
+use xxhash_rust::xxh3::xxh3_64;
 
 use crate::error::{Error, Result};
 
@@ -51,22 +52,23 @@ impl Writer {
         Ok(Self { path: path.to_owned(), file, vertex_count, sample_count: 0, buffer: Vec::new() })
     }
 
-    /// Takes up a file after its first `sample_count` samples and forgets those behind.
+    /// Takes up a file after its first samples, whose hashes are those that `append` gave, and forgets those behind.
     ///
     /// # Errors
-    /// [`Error::Cache`] when it cannot be read or written, is of another cloth, or holds fewer samples.
+    /// [`Error::Cache`] when it cannot be read or written, is of another cloth, or does not hold these samples.
     pub fn resume(
         path: &Path,
         vertex_count: u32,
         first_frame: i32,
-        sample_count: u32,
+        hashes: &[u64],
     ) -> Result<Self> {
+        let sample_count = hashes.len() as u32;
         let open = || {
             let mut file = OpenOptions::new().read(true).write(true).open(path)?;
             let header = Header::read(&mut file)?;
             Ok((file, header))
         };
-        let (file, header) = open().map_err(|error| Error::cache(path, "read", &error))?;
+        let (mut file, header) = open().map_err(|error| Error::cache(path, "read", &error))?;
         let same = header.vertex_count == vertex_count && header.first_frame == first_frame;
         if !same || header.sample_count < sample_count {
             return Err(Error::Cache(format!(
@@ -79,8 +81,17 @@ impl Writer {
                 header.first_frame
             )));
         }
+        if let Some(sample) = first_changed(&mut file, vertex_count, hashes) {
+            return Err(Error::Cache(format!(
+                "{}: frame {} is not as the bake wrote it; accepted: the file as the bake left it, \
+                 or a bake without --resume",
+                path.display(),
+                i64::from(first_frame) + sample as i64
+            )));
+        }
         let buffer = Vec::new();
         let mut writer = Self { path: path.to_owned(), file, vertex_count, sample_count, buffer };
+        writer.begin_with(Header { vertex_count, first_frame, sample_count })?;
         writer.truncate(sample_count)?;
         Ok(writer)
     }
@@ -91,14 +102,14 @@ impl Writer {
         self.sample_count
     }
 
-    /// Adds a sample: positions (m), one for each vertex.
+    /// Adds a sample: positions (m), one for each vertex. Returns the XXH3-64 of its bytes.
     ///
     /// # Errors
     /// [`Error::Cache`] when the disk is full; the file then holds what it held.
     ///
     /// # Panics
     /// When there are not as many positions as vertices.
-    pub fn append(&mut self, positions: &[Vector]) -> Result<()> {
+    pub fn append(&mut self, positions: &[Vector]) -> Result<u64> {
         assert_eq!(positions.len(), self.vertex_count as usize, "one position for each vertex");
         self.buffer.clear();
         for position in positions {
@@ -106,7 +117,8 @@ impl Writer {
                 self.buffer.extend((position[axis] as f32).to_le_bytes());
             }
         }
-        self.write_sample().map_err(|error| Error::cache(&self.path, "written", &error))
+        self.write_sample().map_err(|error| Error::cache(&self.path, "written", &error))?;
+        Ok(xxh3_64(&self.buffer))
     }
 
     /// Forgets the samples from `sample_count` on.
@@ -132,6 +144,12 @@ impl Writer {
         self.file.sync_data().map_err(|error| Error::cache(&self.path, "written", &error))
     }
 
+    /// Writes the header, of which less than what is compared may be as it was.
+    fn begin_with(&mut self, header: Header) -> Result<()> {
+        let written = self.file.rewind().and_then(|()| self.file.write_all(&header.bytes()));
+        written.map_err(|error| Error::cache(&self.path, "written", &error))
+    }
+
     fn write_sample(&mut self) -> std::io::Result<()> {
         self.file.seek(SeekFrom::Start(self.end_of(self.sample_count)))?;
         self.file.write_all(&self.buffer)?;
@@ -148,6 +166,18 @@ impl Writer {
 fn write_sample_count(file: &mut File, sample_count: u32) -> std::io::Result<()> {
     file.seek(SeekFrom::Start(SAMPLE_COUNT_AT))?;
     file.write_all(&sample_count.to_le_bytes())
+}
+
+/// The first sample of a file, read from behind its header, that has another hash or is not there.
+fn first_changed(file: &mut File, vertex_count: u32, hashes: &[u64]) -> Option<usize> {
+    let size = 12 * u64::from(vertex_count);
+    let mut source = BufReader::new(file);
+    let mut sample = Vec::new();
+    hashes.iter().position(|&hash| {
+        sample.clear();
+        let read = (&mut source).take(size).read_to_end(&mut sample);
+        read.is_err() || sample.len() as u64 != size || xxh3_64(&sample) != hash
+    })
 }
 
 /// What stands before the samples.
@@ -252,12 +282,12 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("flag.pc2");
         let mut writer = Writer::create(&path, 2, 1).expect("there is room");
-        writer.append(&positions(1.0)).expect("there is room");
+        let hash = writer.append(&positions(1.0)).expect("there is room");
         drop(writer);
         let mut file = OpenOptions::new().append(true).open(&path).expect("it is there");
         file.write_all(&[9; 17]).expect("half a sample");
         assert_eq!(read(&path).expect("a valid prefix").0.sample_count, 1);
-        let mut writer = Writer::resume(&path, 2, 1, 1).expect("the same cloth");
+        let mut writer = Writer::resume(&path, 2, 1, &[hash]).expect("the same cloth");
         writer.append(&positions(7.0)).expect("there is room");
         assert_eq!(read(&path).expect("whole").1[6].to_bits(), 7_f32.to_bits());
         assert_eq!(std::fs::metadata(&path).expect("it is there").len(), 32 + 48);
@@ -268,11 +298,14 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("flag.pc2");
         let mut writer = Writer::create(&path, 2, 1).expect("there is room");
-        for sample in 0..5 {
-            writer.append(&positions(f64::from(sample))).expect("there is room");
-        }
+        let mut append =
+            |sample| writer.append(&positions(f64::from(sample))).expect("there is room");
+        let hashes: Vec<u64> = (0..5).map(&mut append).collect();
         drop(writer);
-        assert_eq!(Writer::resume(&path, 2, 1, 2).expect("five are there").sample_count(), 2);
+        assert_eq!(
+            Writer::resume(&path, 2, 1, &hashes[..2]).expect("five are there").sample_count(),
+            2
+        );
         assert_eq!(std::fs::metadata(&path).expect("it is there").len(), 32 + 48);
     }
 
@@ -281,12 +314,45 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("flag.pc2");
         drop(Writer::create(&path, 2, 1).expect("there is room"));
-        for (vertices, first, samples) in [(3, 1, 0), (2, 2, 0), (2, 1, 1)] {
-            let error = Writer::resume(&path, vertices, first, samples).expect_err("another");
+        for (vertices, first, hashes) in [(3, 1, &[][..]), (2, 2, &[]), (2, 1, &[7])] {
+            let error = Writer::resume(&path, vertices, first, hashes).expect_err("another");
             assert_eq!(error.exit_code(), 4);
         }
         std::fs::write(&path, b"POINTCACHE1").expect("there is room");
         assert!(read(&path).is_err());
+    }
+
+    /// Every bit: of the header, of samples that are gone on from, and none of those behind them.
+    #[test]
+    fn a_file_with_a_bit_changed_is_refused_or_mended() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("flag.pc2");
+        let mut writer = Writer::create(&path, 2, 1).expect("there is room");
+        let mut append = |value| writer.append(&positions(value)).expect("there is room");
+        let hashes = [append(1.0), append(2.0)];
+        let whole = std::fs::read(&path).expect("it is there");
+        append(3.0);
+        drop(writer);
+        let longer = std::fs::read(&path).expect("it is there");
+        for bit in 0..8 * longer.len() {
+            let mut bytes = longer.clone();
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            std::fs::write(&path, bytes).expect("there is room");
+            match Writer::resume(&path, 2, 1, &hashes) {
+                Ok(_) => assert_eq!(std::fs::read(&path).expect("it is there"), whole, "bit {bit}"),
+                Err(error) => assert!(bit / 8 < whole.len(), "bit {bit}: {error}"),
+            }
+        }
+        for length in 0..longer.len() as u64 {
+            std::fs::write(&path, &longer[..length as usize]).expect("there is room");
+            let resumed = Writer::resume(&path, 2, 1, &hashes);
+            assert_eq!(resumed.is_ok(), length as usize >= whole.len(), "cut at {length}");
+        }
+        let mut bytes = longer;
+        bytes[32 + 24] ^= 1;
+        std::fs::write(&path, bytes).expect("there is room");
+        let error = Writer::resume(&path, 2, 1, &hashes).expect_err("a bit of the second sample");
+        assert!(error.to_string().contains("frame 2 is not as the bake wrote it"), "{error}");
     }
 
     /// Four billion samples of four billion vertices are more bytes than can be counted.

@@ -80,6 +80,9 @@ pub struct FrameRow {
     pub potential_energy: f64,
     /// XXH3-64 over all positions (f64), 16 hexadecimal digits.
     pub hash: String,
+    /// XXH3-64 over the bytes of the frame's sample in the cache of each cloth, likewise; left out without caches.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sample_hashes: Vec<String>,
     /// How many edges are longer than the deformation rate of their cloth allows; left out if there are none.
     #[serde(skip_serializing_if = "is_none")]
     pub overstretched_count: usize,
@@ -111,6 +114,7 @@ impl FrameRow {
             kinetic_energy: certificate.kinetic_energy,
             potential_energy: certificate.potential_energy,
             hash: format!("{:016x}", certificate.hash),
+            sample_hashes: Vec::new(),
             overstretched_count: 0,
             overstretched: Vec::new(),
         }
@@ -149,11 +153,25 @@ impl FrameRow {
         self
     }
 
+    /// The same row with the hashes of the samples that the caches hold of the frame.
+    #[must_use]
+    pub fn with_samples(mut self, hashes: &[u64]) -> Self {
+        self.sample_hashes = hashes.iter().map(|hash| format!("{hash:016x}")).collect();
+        self
+    }
+
     /// The row as JSON.
     #[must_use]
     pub fn to_json(&self) -> String {
         json(self)
     }
+}
+
+/// The hashes of the samples of a frame, from its row as JSON; none if it is no row of a bake.
+pub(crate) fn sample_hashes(row: &str) -> Vec<u64> {
+    let row: serde_json::Value = serde_json::from_str(row).unwrap_or_default();
+    let hashes = row["sample_hashes"].as_array().into_iter().flatten();
+    hashes.filter_map(|hash| u64::from_str_radix(hash.as_str()?, 16).ok()).collect()
 }
 
 /// The report of a bake.
@@ -331,6 +349,8 @@ mod tests {
         assert_eq!(keys, expected);
         let row = FrameRow::new(&certificate(7), None).to_json();
         assert!(!row.contains("seconds"));
+        let row = FrameRow::new(&certificate(7), None).with_samples(&[3, u64::MAX]).to_json();
+        assert_eq!(sample_hashes(&row), [3, u64::MAX]);
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! What moves the particles by a step: a rule that needs nothing but the state, or one that remembers.
+//! What moves the particles by a step: a rule that needs nothing but the state ([`crate::integrator`]), or one that remembers the
+//! states before ([`crate::implicit`]).
 
 use crate::cloth::Cloth;
 use crate::contact::{Contacts, Response};

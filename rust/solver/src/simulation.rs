@@ -22,7 +22,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use boucle_geometry::Vector;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPool;
 
 use crate::awake::with_others_awake;
 use crate::certificate::Certificate;
@@ -49,6 +49,7 @@ use crate::state::State;
 use crate::step::Step;
 use crate::system::System;
 use crate::tear::Split;
+use crate::threads;
 
 /// Cloths in motion, at the end of a frame.
 pub struct Simulation {
@@ -138,15 +139,11 @@ impl Simulation {
         }
         winds.iter().try_for_each(|wind| wind.check(&cloths))?;
         let digest = digest(&cloths, &colliders, &winds, &settings);
-        let threads = ThreadPoolBuilder::new()
-            .num_threads(settings.threads)
-            .thread_name(|index| format!("boucle-{index}"))
-            .build()
-            .map_err(|_| Error::Threads(settings.threads))?;
+        let threads = threads::take(settings.threads)?;
         let split =
             |cloth: &Cloth| cloth.tear.as_ref().map(|_| Box::new(Split::new(cloth.clone())));
         let splits = cloths.iter().map(split).collect();
-        let pool = (Arc::new(threads), Interrupter::default());
+        let pool = (threads, Interrupter::default());
         let made = Self::assemble(cloths, (colliders, winds), settings, pool);
         let mut simulation = Self { digest, splits, ..made };
         simulation.shrink_from_the_first()?;

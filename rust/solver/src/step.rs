@@ -1,4 +1,8 @@
 //! One substep: a table of contents.
+//!
+//! Move, by all forces and, if the step is implicit, by the contacts in its system; let explicit steps meet their contacts; hold
+//! the edges that are too long; cut short the ways that still lead through something. At the end of a frame the last two take
+//! turns until both hold.
 
 use crate::contact::{Contacts, Walls};
 use crate::implicit::Implicit;

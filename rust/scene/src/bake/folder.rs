@@ -9,7 +9,7 @@ use crate::atomic::{self, Durability};
 use crate::checkpoint::{self, Checkpoint};
 use crate::description::{ClothDescription, Scene};
 use crate::error::{Error, Result};
-use crate::report::Report;
+use crate::report::{self, Report};
 use crate::{obj, pc2};
 
 /// Longest cloth name that names a file (bytes).
@@ -52,22 +52,27 @@ impl Folder {
         self.write_report(report)?;
         let simulation = &assembly.simulation;
         for index in 0..simulation.cloth_count() {
-            let cloth = simulation.given(index);
-            let path = self.path.join(format!("{}.obj", cloth.name));
-            let mut bytes = Vec::new();
-            obj::write(&mut bytes, &cloth.mesh, &cloth.positions)
-                .map_err(|error| Error::cache(&path, "written", &error))?;
-            atomic::replace(&path, &bytes, Durability::Process)?;
+            self.write_mesh(assembly, index)?;
             // What the end of the bake will leave, or what one has left that tore.
             forget(&if torn::tears(simulation, index) {
-                self.path.join(format!("{}.pc2", cloth.name))
+                self.path.join(format!("{}.pc2", simulation.given(index).name))
             } else {
-                torn::corners_path(&self.path, &cloth.name)
+                torn::corners_path(&self.path, &simulation.given(index).name)
             })?;
             let (path, point_count) = self.cache_of(assembly, index);
             self.caches.push(pc2::Writer::create(&path, point_count, first_kept)?);
         }
         Ok(self)
+    }
+
+    /// Writes the rest mesh of a cloth as it was given.
+    fn write_mesh(&self, assembly: &Assembly, index: usize) -> Result<()> {
+        let cloth = assembly.simulation.given(index);
+        let path = self.path.join(format!("{}.obj", cloth.name));
+        let mut bytes = Vec::new();
+        obj::write(&mut bytes, &cloth.mesh, &cloth.positions)
+            .map_err(|error| Error::cache(&path, "written", &error))?;
+        atomic::replace(&path, &bytes, Durability::Process)
     }
 
     /// Where the cache of a cloth is, and how many points it has.
@@ -89,25 +94,30 @@ impl Folder {
         torn.try_for_each(|index| torn::gather(&self.path, simulation, index))
     }
 
-    /// Takes up the caches after their first samples.
+    /// Takes up the caches after the samples that rows of the report tell of; what else the bake left is written anew.
     pub(super) fn take_up(
         mut self,
         assembly: &Assembly,
         first_kept: i32,
-        sample_count: usize,
+        rows: &[String],
     ) -> Result<Self> {
-        let simulation = &assembly.simulation;
-        for index in 0..simulation.cloth_count() {
+        let hashes: Vec<Vec<u64>> = rows.iter().map(|row| report::sample_hashes(row)).collect();
+        for index in 0..assembly.simulation.cloth_count() {
             let (path, point_count) = self.cache_of(assembly, index);
-            let samples = sample_count as u32;
-            self.caches.push(pc2::Writer::resume(&path, point_count, first_kept, samples)?);
+            let own: Vec<u64> = hashes.iter().filter_map(|row| row.get(index).copied()).collect();
+            self.caches.push(pc2::Writer::resume(&path, point_count, first_kept, &own)?);
         }
+        // A cloth that tears gets its mesh in the end.
+        let whole = |&index: &usize| !torn::tears(&assembly.simulation, index);
+        let mut meshes = (0..self.caches.len()).filter(whole);
+        meshes.try_for_each(|index| self.write_mesh(assembly, index))?;
         Ok(self)
     }
 
-    /// Adds the positions of every cloth to its cache: of all cloths, or of none.
-    pub(super) fn append(&mut self, assembly: &Assembly) -> Result<()> {
+    /// Adds the positions of every cloth to its cache: of all cloths, or of none. Returns the hash of each sample.
+    pub(super) fn append(&mut self, assembly: &Assembly) -> Result<Vec<u64>> {
         let samples = self.caches.first().map_or(0, pc2::Writer::sample_count) as usize;
+        let mut hashes = Vec::with_capacity(self.caches.len());
         for (index, cache) in self.caches.iter_mut().enumerate() {
             let simulation = &assembly.simulation;
             let points = if torn::tears(simulation, index) {
@@ -115,12 +125,15 @@ impl Folder {
             } else {
                 simulation.positions(index)
             };
-            if let Err(error) = cache.append(&points) {
-                self.truncate(samples);
-                return Err(error);
+            match cache.append(&points) {
+                Ok(hash) => hashes.push(hash),
+                Err(error) => {
+                    self.truncate(samples);
+                    return Err(error);
+                }
             }
         }
-        Ok(())
+        Ok(hashes)
     }
 
     /// Takes samples back after a failed write. A cache that cannot even be cut keeps one sample more than the report,

@@ -1,4 +1,13 @@
-//! Forces that are not springs: gravity and air damping (in [`crate::system`]), wind, force fields, pressure, water.
+//! Forces that are not springs, in N on each particle.
+//!
+//! - [`wind`] is the classic law and the law by area, whose faces feel a [`flow`]; [`weather`] makes it gust, [`shelter`] keeps it
+//!   from what stands in the lee of colliders; [`winds`] are all of them.
+//! - [`field`] and [`fields`] are Blender's force fields.
+//! - [`pressure`] inflates a cloth; [`filling`] is what one cloth holds.
+//! - [`water`] is the surface, [`sea`] carries and wets what is in it, [`hull`] carries what is closed.
+//!
+//! [`air`] adds all of them up, face by face ([`faces`]). Gravity and air damping are in [`crate::system`]. What an implicit step
+//! needs besides, a bound of each force's slope, stands beside the force.
 
 mod air;
 mod faces;

@@ -11,7 +11,15 @@
 //! Waves of several lengths add up. They ride on the current: x is counted from where it has carried them. g is standard gravity,
 //! whatever the scene's is.
 //!
-//! Source: Airy 1845, small waves on deep water.
+//! Cloth takes up water by a wetness from 0 to 1, which changes between frames: t seconds under water, or out of it, make of w
+//!
+//! ```text
+//! sqrt(min(1, w² + t/soak_time))          max(0, w - t/dry_time)
+//! ```
+//!
+//! and the mass of what is dry `1 + absorbency w` times as much.
+//!
+//! Sources: Airy 1845, small waves on deep water; Washburn 1921 for the square root of time.
 
 use std::f64::consts::TAU;
 

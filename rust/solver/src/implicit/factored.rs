@@ -40,7 +40,7 @@ impl Factored {
         contacts: &ContactMatrix,
     ) -> &mut Cholesky {
         hessian.write(&self.pattern, system, contacts, &mut self.matrix);
-        self.cholesky.factor(&self.matrix);
+        self.cholesky.factor(&self.matrix, &hessian.inertia);
         &mut self.cholesky
     }
 }

@@ -1,7 +1,9 @@
 //! Strain limits: what keeps springs below their allowed length `(1 + rate) L0`.
 //!
-//! `stiffen` (the paper's equation 6) is part of the spring law; `provot` and `project` act on the state after
-//! every step.
+//! `stiffen` (the paper's equation 6) is part of the spring law ([`crate::law::spring`]); [`provot`] and [`project`] act on the
+//! state after every step. Only `project` promises: at a frame's end no mesh edge is longer than allowed by more than a
+//! thousandth of its rest length, unless pins force it ([`crate::overstretch`]). Implicit steps help it along, by taut edges and a pull
+//! of all at once ([`crate::implicit`]).
 
 mod marks;
 mod order;

@@ -27,6 +27,9 @@ pub(super) struct Front {
     pub(super) runs: Vec<Run>,
 }
 
+/// Subtrees of fewer fronts are one task.
+const TASK: usize = 24;
+
 impl Front {
     pub(super) fn own_count(&self) -> usize {
         self.block.own.len()
@@ -71,6 +74,20 @@ impl Fronts {
             fronts.all.push(front);
         }
         fronts
+    }
+
+    /// What becomes of the subtrees of both children of a front: side by side, or one after the other where they are small.
+    pub(super) fn join<R: Send>(
+        &self,
+        root: usize,
+        lower: impl FnOnce() -> R + Send,
+        upper: impl FnOnce() -> R + Send,
+    ) -> [R; 2] {
+        if root - (self.all[root].block.first_block as usize) < TASK {
+            return [lower(), upper()];
+        }
+        let (lower, upper) = rayon::join(lower, upper);
+        [lower, upper]
     }
 
     /// The row of a particle in a front that it takes part in: its own come first, then those below; none if it was eliminated

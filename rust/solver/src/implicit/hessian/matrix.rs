@@ -59,10 +59,9 @@ impl Hessian {
         contacts: &ContactMatrix,
         out: &mut BlockMatrix,
     ) {
-        let BlockMatrix { diagonal, pairs, least } = out;
+        let BlockMatrix { diagonal, pairs } = out;
         let couplings = pattern.couplings.par_iter().with_min_len(TASK);
         couplings.map(|coupling| self.block(coupling, system)).collect_into_vec(pairs);
-        least.clone_from(&self.inertia);
         for entries in &mut *diagonal {
             entries.resize(self.inertia.len(), 0.0);
         }

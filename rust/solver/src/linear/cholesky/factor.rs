@@ -8,9 +8,6 @@ use super::dense::{self, ROWS, Shape, Tile};
 use super::{AXES, BlockMatrix, BlockPlace, Cholesky};
 use crate::linear::fronts::Front;
 
-/// Subtrees of fewer fronts are one task.
-const TASK: usize = 24;
-
 thread_local! {
     static TILES: Cell<Vec<Tile>> = const { Cell::new(Vec::new()) };
 }
@@ -22,17 +19,23 @@ impl Front {
 }
 
 impl Cholesky {
-    /// Factors a matrix.
-    pub(crate) fn factor(&mut self, matrix: &BlockMatrix) {
+    /// Factors a matrix, of which `least` is on the diagonal of each particle beside parts that are not negative; 0 for one that
+    /// does not move.
+    pub(crate) fn factor(&mut self, matrix: &BlockMatrix, least: &[f32]) {
         let mut numbers = std::mem::take(&mut self.numbers);
         if let Some(root) = self.fronts.all.len().checked_sub(1) {
-            self.eliminate(matrix, root, &mut numbers);
+            self.eliminate((matrix, least), root, &mut numbers);
         }
         self.numbers = numbers;
     }
 
     /// Eliminates a subtree into its part of the numbers and returns what remains for the rows below its root.
-    fn eliminate(&self, matrix: &BlockMatrix, root: usize, numbers: &mut [f32]) -> Vec<f32> {
+    fn eliminate(
+        &self,
+        (matrix, least): (&BlockMatrix, &[f32]),
+        root: usize,
+        numbers: &mut [f32],
+    ) -> Vec<f32> {
         let front = &self.fronts.all[root];
         let shape = front.shape();
         let (before, columns) = numbers.split_at_mut(numbers.len() - self.columns[root].len());
@@ -43,16 +46,11 @@ impl Cholesky {
             let first = front.block.first_block as usize;
             let middle = self.columns[lower].end - self.columns[first].start;
             let (lower_numbers, upper_numbers) = before.split_at_mut(middle);
-            let remainders = if root - first < TASK {
-                let lower = self.eliminate(matrix, lower, lower_numbers);
-                [lower, self.eliminate(matrix, upper, upper_numbers)]
-            } else {
-                let (lower, upper) = rayon::join(
-                    || self.eliminate(matrix, lower, lower_numbers),
-                    || self.eliminate(matrix, upper, upper_numbers),
-                );
-                [lower, upper]
-            };
+            let remainders = self.fronts.join(
+                root,
+                || self.eliminate((matrix, least), lower, lower_numbers),
+                || self.eliminate((matrix, least), upper, upper_numbers),
+            );
             for (child, remainder) in [lower, upper].into_iter().zip(&remainders) {
                 extend_add(shape, columns, &mut rest, &self.fronts.all[child], remainder);
             }
@@ -60,7 +58,7 @@ impl Cholesky {
         let own = &self.fronts.order[front.own_places()];
         assemble(matrix, own, &self.places[root], columns, shape.size);
         let least = own.iter().flat_map(|&particle| {
-            let least = matrix.least[particle as usize];
+            let least = least[particle as usize];
             [if least > 0.0 { least } else { 1.0 }; AXES]
         });
         let least: Vec<f32> = least.collect();

@@ -46,8 +46,6 @@ pub(crate) struct BlockMatrix {
     /// Of each pair a block B, row by row: the matrix has -B in the rows of the smaller particle and the columns of the larger,
     /// and -Bᵀ in the others. Zeros where an end does not move.
     pub(crate) pairs: Vec<[f32; AXES * AXES]>,
-    /// What each particle has at least on its diagonal beside parts that are not negative; 0 for one that does not move.
-    pub(crate) least: Vec<f32>,
 }
 
 /// A block of the matrix in a front.

@@ -4,8 +4,11 @@ use super::super::problems::{grid, noise};
 use super::*;
 use crate::scatter::scattered;
 
+/// A matrix, and what each particle has at least on its diagonal.
+type Problem = (BlockMatrix, Vec<f32>);
+
 /// Pairs that resist along their own directions more than across, with a skew part, and uneven inertia.
-fn matrix(pairs: &[[u32; 2]], count: usize, pins: &[usize], inertia: f32) -> BlockMatrix {
+fn problem(pairs: &[[u32; 2]], count: usize, pins: &[usize], inertia: f32) -> Problem {
     let is_pinned = |particle: u32| pins.contains(&(particle as usize));
     let mut blocks = vec![Matrix3::<f32>::identity() * inertia; count];
     let mut numbers = Vec::new();
@@ -26,11 +29,11 @@ fn matrix(pairs: &[[u32; 2]], count: usize, pins: &[usize], inertia: f32) -> Blo
     let entry = |row: usize, column: usize| blocks.iter().map(|b| b[(row, column)]).collect();
     let diagonal =
         [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)].map(|(row, column)| entry(row, column));
-    BlockMatrix { diagonal, pairs: numbers, least }
+    (BlockMatrix { diagonal, pairs: numbers }, least)
 }
 
 fn dense(pairs: &[[u32; 2]], matrix: &BlockMatrix) -> DMatrix<f64> {
-    let count = matrix.least.len();
+    let count = matrix.diagonal[0].len();
     let mut dense = DMatrix::zeros(3 * count, 3 * count);
     for i in 0..count {
         let entries = matrix.diagonal.each_ref().map(|entries| f64::from(entries[i]));
@@ -51,14 +54,14 @@ fn dense(pairs: &[[u32; 2]], matrix: &BlockMatrix) -> DMatrix<f64> {
     dense
 }
 
-fn worst_error(positions: &[Vector], pairs: &[[u32; 2]], matrix: &BlockMatrix) -> f64 {
+fn worst_error(positions: &[Vector], pairs: &[[u32; 2]], (matrix, least): &Problem) -> f64 {
     let count = positions.len();
     let graph = Graph::new(count, pairs);
     let mut cholesky = Cholesky::new(&graph, positions);
     let r = noise(count);
     let mut z = Field::zeros(count);
     for _ in 0..2 {
-        cholesky.factor(matrix);
+        cholesky.factor(matrix, least);
         cholesky.apply_inverse(&r, &mut z);
     }
     let flat = |field: &Field| DVector::from_fn(3 * count, |i, _| f64::from(field.0[i % 3][i / 3]));
@@ -70,7 +73,7 @@ fn worst_error(positions: &[Vector], pairs: &[[u32; 2]], matrix: &BlockMatrix) -
 fn a_solve_agrees_with_dense_elimination_on_grids_of_any_shape() {
     for (columns, rows) in [(1, 1), (2, 1), (5, 5), (40, 1), (17, 23), (100, 3)] {
         let (positions, pairs) = grid(columns, rows);
-        let error = worst_error(&positions, &pairs, &matrix(&pairs, positions.len(), &[0], 0.1));
+        let error = worst_error(&positions, &pairs, &problem(&pairs, positions.len(), &[0], 0.1));
         assert!(error < 1e-4, "{columns} x {rows}: {error}");
     }
 }
@@ -79,14 +82,14 @@ fn a_solve_agrees_with_dense_elimination_on_grids_of_any_shape() {
 #[test]
 fn a_solve_agrees_where_blocks_are_skew() {
     let (positions, pairs) = grid(12, 9);
-    let mut matrix = matrix(&pairs, positions.len(), &[3], 2.0);
-    let free = matrix.pairs.iter_mut().enumerate().filter(|(_, block)| block[0] > 0.0);
+    let mut problem = problem(&pairs, positions.len(), &[3], 2.0);
+    let free = problem.0.pairs.iter_mut().enumerate().filter(|(_, block)| block[0] > 0.0);
     for (pair, block) in free {
         let tilt = 0.1 * scattered(pair as u64) as f32;
         block[1] += tilt;
         block[3] -= tilt;
     }
-    let error = worst_error(&positions, &pairs, &matrix);
+    let error = worst_error(&positions, &pairs, &problem);
     assert!(error < 1e-4, "{error}");
 }
 
@@ -94,13 +97,13 @@ fn a_solve_agrees_where_blocks_are_skew() {
 fn a_solve_agrees_where_particles_coincide_or_are_not_joined() {
     let (positions, pairs) = grid(14, 14);
     let one_point = vec![Vector::zeros(); positions.len()];
-    let whole = matrix(&pairs, positions.len(), &[], 0.1);
+    let whole = problem(&pairs, positions.len(), &[], 0.1);
     let error = worst_error(&one_point, &pairs, &whole);
     assert!(error < 1e-4, "in one point: {error}");
     let apart: Vec<_> = pairs.iter().copied().filter(|&[a, b]| a / 50 == b / 50).collect();
-    let error = worst_error(&positions, &apart, &matrix(&apart, positions.len(), &[7], 0.1));
+    let error = worst_error(&positions, &apart, &problem(&apart, positions.len(), &[7], 0.1));
     assert!(error < 1e-4, "in pieces: {error}");
-    let error = worst_error(&positions, &[], &matrix(&[], positions.len(), &[7], 0.1));
+    let error = worst_error(&positions, &[], &problem(&[], positions.len(), &[7], 0.1));
     assert!(error < 1e-6, "none joined: {error}");
 }
 
@@ -111,7 +114,8 @@ fn hardly_any_inertia_leaves_the_inverse_positive() {
     let count = positions.len();
     let graph = Graph::new(count, &pairs);
     let mut cholesky = Cholesky::new(&graph, &positions);
-    cholesky.factor(&matrix(&pairs, count, &[], 1e-8));
+    let (matrix, least) = problem(&pairs, count, &[], 1e-8);
+    cholesky.factor(&matrix, &least);
     let mut z = Field::zeros(count);
     for seed in 0..20 {
         let mut r = noise(count);
@@ -132,7 +136,7 @@ fn pinned_particles_stay_exactly_where_they_are_and_threads_change_no_bit() {
     let (positions, pairs) = grid(70, 40);
     let count = positions.len();
     let pins: Vec<usize> = (0..70).chain([777, 1999]).collect();
-    let matrix = matrix(&pairs, count, &pins, 1e-2);
+    let (matrix, least) = problem(&pairs, count, &pins, 1e-2);
     let graph = Graph::new(count, &pairs);
     let r = noise(count);
     let [one, three] = [1, 3].map(|threads| {
@@ -140,7 +144,7 @@ fn pinned_particles_stay_exactly_where_they_are_and_threads_change_no_bit() {
         let mut z = Field::zeros(count);
         pool.expect("threads").install(|| {
             let mut cholesky = Cholesky::new(&graph, &positions);
-            cholesky.factor(&matrix);
+            cholesky.factor(&matrix, &least);
             cholesky.apply_inverse(&r, &mut z);
         });
         z
@@ -160,7 +164,7 @@ fn what_is_no_number_comes_out_as_none() {
     let (positions, pairs) = grid(9, 9);
     let count = positions.len();
     let graph = Graph::new(count, &pairs);
-    let good = matrix(&pairs, count, &[], 1.0);
+    let (good, least) = problem(&pairs, count, &[], 1.0);
     for bad in [f32::NAN, f32::INFINITY] {
         for (in_pair, in_vector) in [(true, false), (false, true)] {
             let (mut matrix, mut r) = (good.clone(), noise(count));
@@ -171,7 +175,7 @@ fn what_is_no_number_comes_out_as_none() {
                 r.0[1][17] = bad;
             }
             let mut cholesky = Cholesky::new(&graph, &positions);
-            cholesky.factor(&matrix);
+            cholesky.factor(&matrix, &least);
             let mut z = Field::zeros(count);
             cholesky.apply_inverse(&r, &mut z);
             assert!(z.0.iter().flatten().any(|z| !z.is_finite()), "{bad} {in_pair}");

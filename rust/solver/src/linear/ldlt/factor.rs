@@ -48,9 +48,6 @@ impl Square {
     }
 }
 
-/// Subtrees of fewer fronts are one task.
-const TASK: usize = 24;
-
 struct Eliminator<'a> {
     symbolic: &'a Symbolic,
     graph: &'a Graph,
@@ -76,15 +73,11 @@ impl Eliminator<'_> {
                 belows.split_at_mut(end.below.end - start.below.start);
             let lower_part = (lower_inverses, lower_belows);
             let upper_part = (upper_inverses, upper_belows);
-            let remainders = if root - (front.block.first_block as usize) < TASK {
-                [self.eliminate(lower, lower_part), self.eliminate(upper, upper_part)]
-            } else {
-                let (lower, upper) = rayon::join(
-                    || self.eliminate(lower, lower_part),
-                    || self.eliminate(upper, upper_part),
-                );
-                [lower, upper]
-            };
+            let remainders = fronts.join(
+                root,
+                || self.eliminate(lower, lower_part),
+                || self.eliminate(upper, upper_part),
+            );
             for (child, remainder) in [lower, upper].into_iter().zip(&remainders) {
                 extend_add(&mut square, &fronts.all[child], remainder);
             }

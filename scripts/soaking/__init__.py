@@ -1,0 +1,1 @@
+"""Long runs in one process: what is simulated, and what is watched meanwhile."""

@@ -4,7 +4,7 @@
 OUT/sweep.json          what is swept, by which `--resume` knows it again
 OUT/runs/NAME/          a whole run: caches, meshes, report.json, and run.json, which names them with their sizes
 OUT/failed/NAME/        a run that failed: its frames so far, and run.json with the sentence that tells why
-OUT/parts/SESSION/      bakes under way; a bake whose session is gone stops
+OUT/parts/SESSION/      bakes under way, and `alive`; a bake whose session is no longer alive stops
 OUT/table.*, OUT/contact_sheet*.png
 ```
 
@@ -22,7 +22,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-SWEEP, RUN = "sweep.json", "run.json"
+SWEEP, RUN, ALIVE = "sweep.json", "run.json", "alive"
 
 
 class Other(Exception):
@@ -71,8 +71,8 @@ class Folder:
             )
         for folder in (self.runs, self.failed, self.parts):
             folder.mkdir(parents=True, exist_ok=True)
-        for old in self.parts.iterdir():
-            shutil.rmtree(old, ignore_errors=True)  # what still bakes there stops
+        for old in list(self.parts.iterdir()):
+            end_session(old)  # what still bakes there stops
         if known is None:
             replace_json(self.path / SWEEP, head)
 
@@ -81,12 +81,11 @@ class Folder:
         """The folder of the bakes of this process; when it goes, so do they."""
         path = self.parts / uuid.uuid4().hex[:12]
         path.mkdir(parents=True)
+        (path / ALIVE).touch()
         try:
             yield path
         finally:
-            shutil.rmtree(path, ignore_errors=True)
-            with contextlib.suppress(OSError):
-                self.parts.rmdir()
+            end_session(path)
             with contextlib.suppress(OSError):
                 self.failed.rmdir()
 
@@ -140,6 +139,31 @@ class Folder:
         if is_done:
             shutil.rmtree(self.failed / name, ignore_errors=True)
         return outcome
+
+
+def is_alive(session: Path) -> bool:
+    """Whether the process that began a session still wants its bakes."""
+    return (session / ALIVE).is_file()
+
+
+def end_session(session: Path) -> None:
+    """Take a session away, and the folder of sessions with the last one.
+
+    A bake under way may write while its folder goes, and so leave some of it: without `alive` the bake stops at its next look,
+    and takes away what is left.
+    """
+    with contextlib.suppress(OSError):
+        (session / ALIVE).unlink()
+    shutil.rmtree(session, ignore_errors=True)
+    drop_empty(session)
+
+
+def drop_empty(session: Path) -> None:
+    """Take a session's folder away if nothing is left in it, and the folder of sessions with the last one."""
+    with contextlib.suppress(OSError):
+        session.rmdir()
+    with contextlib.suppress(OSError):
+        session.parent.rmdir()
 
 
 def read_json(path: Path) -> dict[str, Any] | None:

@@ -18,7 +18,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypedDict
 
-from .folder import Folder, read_json
+from .folder import Folder, drop_empty, is_alive, read_json
 
 BLEND_BAKE = Path(__file__).with_name("blend_bake.py")
 SECONDS_BETWEEN_LOOKS = 1.0
@@ -67,21 +67,22 @@ class Watch:
             raise Failed(f"it took longer than the timeout of {self._timeout:g} s")
         if now - self._looked >= SECONDS_BETWEEN_LOOKS:
             self._looked = now
-            if not self._session.is_dir():
+            if not is_alive(self._session):
                 raise Gone
 
 
 def perform(job: Job) -> dict[str, Any] | None:
     """Bake a run, unless it is there whole, and return what its run.json holds; nothing if the sweep is gone."""
     folder = Folder(Path(job["out"]))
+    session = Path(job["session"])
     known = folder.whole(job["run"])
     if known is not None:
         return known
-    if not Path(job["session"]).is_dir():
+    if not is_alive(session):
         return outcome_of(
             job, f"{platform.node()} does not see {job['session']}: it needs {job['out']} shared"
         )
-    part = Path(job["session"]) / f"{job['run']}.{uuid.uuid4().hex[:8]}"
+    part = session / f"{job['run']}.{uuid.uuid4().hex[:8]}"
     try:
         part.mkdir()
         sentence = _baked(job, part)
@@ -91,11 +92,13 @@ def perform(job: Job) -> dict[str, Any] | None:
     except Gone:
         return None
     except OSError as error:
-        if not Path(job["session"]).is_dir():
+        if not is_alive(session):
             return None
         return record_failure(job, f"its result cannot be written ({error})")
     finally:
         shutil.rmtree(part, ignore_errors=True)
+        if not is_alive(session):
+            drop_empty(session)
 
 
 def _baked(job: Job, part: Path) -> str | None:
@@ -131,7 +134,7 @@ def _bake_scene(job: Job, part: Path) -> None:
             progress=lambda _step: watch.look(),
         )
     except core.CacheError as error:
-        if not Path(job["session"]).is_dir():
+        if not is_alive(Path(job["session"])):
             raise Gone from error
         raise Failed(str(error)) from error
     except core.BoucleError as error:

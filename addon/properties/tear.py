@@ -31,8 +31,8 @@ class TearProperties:
     )  # fmt: skip
     tear_strain: FloatProperty(
         name="Strain",
-        description="Strain beyond which an edge breaks (L/L0 - 1); 0 for never. A limiter keeps edges within the Deformation "
-        "Rate: choose less than that, or the limiter None",
+        description="Strain beyond which an edge breaks (L/L0 - 1); 0 for never. If it is not below the Deformation Rate, the "
+        "limiter does not act",
         default=0.0, min=0.0, max=1e6, soft_max=2.0, precision=3, step=1,
         options=FIXED, override=OVERRIDABLE, update=changed,
     )  # fmt: skip

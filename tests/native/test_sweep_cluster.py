@@ -7,9 +7,14 @@ import socket
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+import boucle_core
 import pytest
+
+from sweeping.folder import Folder
+from sweeping.run import perform
 
 SWEEP = Path(__file__).resolve().parents[2] / "scripts" / "sweep.py"
 RUNS = """
@@ -206,6 +211,27 @@ def test_a_sweep_that_is_killed_or_stopped_leaves_no_worker_busy_and_resumes(
     end_of(start_sweep(*words, samples=3, frames=3000))
     assert len(outcomes(out)) == 3
     assert not (out / "parts").exists()
+
+
+def test_a_bake_whose_session_has_ended_stops_also_in_a_folder_that_came_back(
+    tmp_path, small_scene
+):
+    """A folder that goes while a bake writes into it may stay in part."""
+    folder = Folder(tmp_path / "out")
+    head = {"boucle": boucle_core.__version__, "digest": "0"}
+    folder.prepare(head, resume=False)
+    job = {"run": "000", "scene": str(small_scene), "out": str(folder.path), "parameters": {}}
+    job |= {"boucle": head["boucle"], "overrides": ["scene.frames=[1, 100000]"], "frames": None}
+    job |= {"timeout": 60, "blender": None}
+    with ThreadPoolExecutor(1) as worker:
+        with folder.session() as session:
+            bake = worker.submit(perform, job | {"session": str(session)})
+            wait_for(lambda: list(session.glob("*/sheet.pc2")))
+            part = next(session.glob("000.*"))
+        part.mkdir(parents=True, exist_ok=True)
+        (part / "left").touch()
+        assert bake.result(timeout=30) is None
+    assert not folder.parts.exists()
 
 
 def test_a_run_that_fails_on_a_worker_is_told_and_the_others_are_whole(

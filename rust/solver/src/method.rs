@@ -103,17 +103,18 @@ impl Method {
         }
     }
 
-    /// Moves `state` by one step of h seconds.
+    /// Moves `state` by one step of h seconds; `is_last` marks the last step of a frame.
     pub(crate) fn step(
         &mut self,
         system: &System,
         state: &mut State,
         contacts: &mut Contacts,
         h: f64,
+        is_last: bool,
     ) {
         match self {
             Self::Explicit(rule, scratch, _) => rule.step(system, state, scratch, h),
-            Self::Implicit(implicit) => implicit.step(system, state, contacts, h),
+            Self::Implicit(implicit) => implicit.step(system, state, contacts, h, is_last),
         }
     }
 }

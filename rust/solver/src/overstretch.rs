@@ -5,6 +5,7 @@
 
 use crate::certificate::length;
 use crate::cloth::Cloth;
+use crate::limit::acting;
 use crate::material::{Limiter, SpringKind};
 use crate::state::State;
 
@@ -22,8 +23,13 @@ pub struct OverstretchedEdge {
 
 /// The edges of a cloth whose strain exceeds the deformation rate by more than [`UNSEEN`], the worst first. `base` is
 /// the number of its first particle.
-pub(crate) fn overstretched(cloth: &Cloth, base: u32, state: &State) -> Vec<OverstretchedEdge> {
-    if cloth.material.limiter == Limiter::None {
+pub(crate) fn overstretched(
+    cloth: &Cloth,
+    base: u32,
+    state: &State,
+    is_implicit: bool,
+) -> Vec<OverstretchedEdge> {
+    if acting(cloth, is_implicit) == Limiter::None {
         return Vec::new();
     }
     let most = cloth.material.deformation_rate + UNSEEN;

@@ -62,7 +62,7 @@ impl Step<'_> {
         }
         let clipped_before = contacts.clipped();
         let meets = !contacts.is_empty() && (is_last || self.number.is_multiple_of(self.stride));
-        method.step(self.system, state, contacts, self.h);
+        method.step(self.system, state, contacts, self.h, is_last);
         if let (Method::Explicit(.., response), true) = (&mut *method, meets) {
             let steps = done % self.stride + 1;
             response.respond(self.system, state, contacts, f64::from(steps) * self.h);

@@ -36,7 +36,7 @@ pub struct TearDescription {
     pub enabled: Option<bool>,
     /// Tension (N) of an edge beyond which it breaks.
     pub force: Option<f64>,
-    /// Strain beyond which it breaks.
+    /// Strain beyond which it breaks; if that is not below the deformation rate, the limiter does not act.
     pub strain: Option<f64>,
     /// Stress (N/m) beyond which it breaks.
     pub stress: Option<f64>,
@@ -56,7 +56,7 @@ pub struct ClothTear {
     pub enabled: Option<bool>,
     /// Tension (N) of an edge beyond which it breaks.
     pub force: Option<f64>,
-    /// Strain beyond which it breaks.
+    /// Strain beyond which it breaks; if that is not below the deformation rate, the limiter does not act.
     pub strain: Option<f64>,
     /// Stress (N/m) beyond which it breaks.
     pub stress: Option<f64>,

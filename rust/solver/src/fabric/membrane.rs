@@ -85,6 +85,15 @@ pub(super) struct Strained<N> {
 }
 
 impl Strained<f64> {
+    /// How hard (N/m) it pulls along a way in the plane at rest, as a force over the width at rest across it.
+    pub(super) fn pull_along(&self, [w, f]: [f64; 2]) -> f64 {
+        let sum = |[along, across]: Frame<f64>| plus(scaled(w, along), scaled(f, across));
+        let way = sum(self.frame);
+        let squared = dot(way, way) * (w * w + f * f);
+        let pull = dot(sum(flows(self.stress, self.frame)), way);
+        if squared > 0.0 { pull / squared.sqrt() } else { 0.0 }
+    }
+
     /// J/m²
     pub(super) fn energy(&self) -> f64 {
         0.5 * self

@@ -278,7 +278,7 @@ impl Fabrics {
         })
     }
 
-    /// The sides of each triangle of a cloth, the smaller particle first, the stress along them (N/m) and a width as that of its
+    /// The sides of each triangle of a cloth, the smaller particle first, the pull along them (N/m) and a width as that of its
     /// sides (m).
     pub(crate) fn side_stresses<'a>(
         &'a self,
@@ -288,14 +288,13 @@ impl Fabrics {
         self.parts[cloth].triangles.clone().flat_map(|number| {
             let one = &self.triangles[number];
             let frame = one.frame(|corner| state.position.get(corner as usize));
-            let [ww, ff, wf] = self.laws[one.law as usize].strained(frame).stress;
+            let strained = self.laws[one.law as usize].strained(frame);
             let width = (2.0 * one.area).sqrt();
             let (flat, corners) = (self.faces[number].flat, one.corners);
             [(0, 1), (1, 2), (2, 0)].map(|(i, j)| {
-                let [w, f] = [0, 1].map(|axis| flat[j][axis] - flat[i][axis]);
-                let along = (ww * w * w + ff * f * f + 2.0 * wf * w * f) / (w * w + f * f);
+                let side = [0, 1].map(|axis| flat[j][axis] - flat[i][axis]);
                 let [a, b] = [corners[i], corners[j]];
-                ([a.min(b), a.max(b)], along, width)
+                ([a.min(b), a.max(b)], strained.pull_along(side), width)
             })
         })
     }

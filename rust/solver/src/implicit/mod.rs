@@ -178,24 +178,26 @@ impl Implicit {
         self.solving = Solving::of(cloths, self.linear_solver).within(system);
     }
 
-    /// Moves `state` by one step of h seconds, among contacts that were told of the step.
+    /// Moves `state` by one step of h seconds, among contacts that were told of the step; `is_last` marks the last step of a frame.
     pub(crate) fn step(
         &mut self,
         system: &System,
         state: &mut State,
         contacts: &mut Contacts,
         h: f64,
+        is_last: bool,
     ) {
         let formula = self.formula(h);
         self.step = formula.step;
+        let solving = if is_last { self.solving.at_end() } else { self.solving };
         let iterations = self.iterations;
         self.predict(system, state, formula, h);
         if contacts.is_empty() {
-            self.approach(system, contacts, formula.step, h);
+            self.approach(system, contacts, solving, h);
         } else {
-            self.approach_and_touch(system, contacts, formula.step, h);
+            self.approach_and_touch(system, contacts, solving, h);
         }
-        let weight = self.solving.weight_of_error(self.iterations - iterations);
+        let weight = solving.weight_of_error(self.iterations - iterations);
         self.memory.error += weight * self.error(state, contacts, h);
         self.memory.before.copy_from(state);
         self.memory.step = h;
@@ -209,8 +211,8 @@ impl Implicit {
     }
 
     /// Newton's iterations from the present guess.
-    fn approach(&mut self, system: &System, contacts: &mut Contacts, step: f64, h: f64) {
-        let solving = self.solving;
+    fn approach(&mut self, system: &System, contacts: &mut Contacts, solving: Solving, h: f64) {
+        let step = self.step;
         let [least, most] = match (contacts.count(), contacts.remembers()) {
             (0, _) => [1, solving.newton],
             (_, true) => [LEAST_IN_CONTACT, MOST_IN_CONTACT],
@@ -238,10 +240,17 @@ impl Implicit {
     }
 
     /// The same among contacts: what is cut short goes on from there, among the contacts that it then has.
-    fn approach_and_touch(&mut self, system: &System, contacts: &mut Contacts, step: f64, h: f64) {
+    fn approach_and_touch(
+        &mut self,
+        system: &System,
+        contacts: &mut Contacts,
+        solving: Solving,
+        h: f64,
+    ) {
+        let step = self.step;
         for round in 1..=ROUNDS {
             contacts.detect(&self.at.position, &system.inverse_masses, step);
-            self.approach(system, contacts, step, h);
+            self.approach(system, contacts, solving, h);
             self.reached.copy_from(&self.at.position);
             let clipped = contacts.truncate(&mut self.reached);
             let is_whole = clipped as usize * MANY <= system.particle_count();

@@ -5,6 +5,7 @@ use crate::linear::Stop;
 use crate::material::SpringKind;
 use crate::settings::LinearSolver;
 use crate::system::System;
+use crate::tear::Tear;
 
 /// When iterations end.
 #[derive(Clone, Copy, Debug)]
@@ -19,11 +20,18 @@ pub(super) struct Solving {
     most_iterations: u32,
     /// Whether the Hessian itself is factored in the place of P.
     pub(super) is_factored: bool,
+    /// Whether edges break by what a frame ends with.
+    tears: bool,
 }
 
 impl Solving {
     /// For cloths: as far as the one asks that is hardest to solve.
     pub(super) fn of(cloths: &[Cloth], choice: LinearSolver) -> Self {
+        let tears = cloths.iter().filter_map(|cloth| cloth.tear.as_ref()).any(Tear::breaks_edges);
+        Self { tears, ..Self::for_materials(cloths, choice) }
+    }
+
+    fn for_materials(cloths: &[Cloth], choice: LinearSolver) -> Self {
         let particle_count: usize = cloths.iter().map(|cloth| cloth.positions.len()).sum();
         let is_fabric = cloths.iter().any(|cloth| cloth.fabric.is_some());
         if is_fabric && choice == LinearSolver::Auto && particle_count <= MOST_FACTORED {
@@ -49,6 +57,18 @@ impl Solving {
         Self { stop, newton: self.newton.max(8), left: self.left.min(0.02), ..self }
     }
 
+    /// The same for the last step of a frame: where edges break, their loads are read from what it leaves. With the limits of fabric
+    /// these are up to three times as large as they should be; solved further in all steps, a frame takes six times as long, in the
+    /// last alone a third more.
+    pub(super) fn at_end(self) -> Self {
+        if !self.tears {
+            return self;
+        }
+        let stop = Stop { tolerance: self.stop.tolerance.min(1e-5), ..self.stop };
+        let (newton, left) = (self.newton.max(12), self.left.min(0.005));
+        Self { stop, newton, left, most_iterations: u32::MAX, ..self }
+    }
+
     /// What the error of a step counts for that took so many iterations; steps grow by its cube root.
     pub(super) fn weight_of_error(&self, iterations: u32) -> f64 {
         if iterations > self.most_iterations { 8.0 } else { 1.0 }
@@ -72,6 +92,7 @@ const OF_SPRINGS: Solving = Solving {
     left: LEFT,
     most_iterations: u32::MAX,
     is_factored: false,
+    tears: false,
 };
 
 /// Woven cloth is a hundred times as stiff along its yarns as across them. What a step leaves of the strain comes back in
@@ -85,6 +106,7 @@ const OF_WOVEN: Solving = Solving {
     left: 0.05,
     most_iterations: 20,
     is_factored: false,
+    tears: false,
 };
 
 /// With the Hessian's factor. What the factor does not know of hinges, at long waves, comes last: with 0.005 a cantilever stops

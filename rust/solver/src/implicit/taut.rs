@@ -17,6 +17,7 @@ use rayon::prelude::*;
 use crate::cloth::{Cloth, placed};
 use crate::kernel::{Layout, Place};
 use crate::law::Spring;
+use crate::limit::acting;
 use crate::linear::{Field, Operator};
 use crate::material::{Limiter, SpringKind};
 use crate::state::Coordinates;
@@ -101,7 +102,7 @@ impl Taut {
         for (cloth, base) in placed(cloths) {
             let allowed = 1.0 + cloth.material.deformation_rate;
             let mass = cloth.masses.iter().sum::<f64>();
-            if cloth.material.limiter != Limiter::Project {
+            if acting(cloth, true) != Limiter::Project {
                 continue;
             }
             let is_stretch = |spring: &&Spring| spring.kind == SpringKind::Stretch;

@@ -19,6 +19,21 @@ use crate::interrupter::Interrupter;
 use crate::material::Limiter;
 use crate::state::State;
 
+/// The limiter of a cloth that acts. What `provot` and `project` correct has no force, and would keep from breaking what breaks by
+/// its load, but for the edges of springs that implicit steps hold; and what breaks at a strain that is not allowed never had it.
+pub(crate) fn acting(cloth: &Cloth, is_implicit: bool) -> Limiter {
+    let limiter = cloth.material.limiter;
+    let Some(tear) = &cloth.tear else { return limiter };
+    let has_force = limiter == Limiter::Project && is_implicit && cloth.fabric.is_none();
+    let hides_load = !has_force && tear.force.or(tear.stress).is_some();
+    let most = |strain: f64| strain * (1.0 + tear.noise);
+    let hides_strain = tear.strain.is_some_and(|of| most(of) >= cloth.material.deformation_rate);
+    match limiter {
+        Limiter::Provot | Limiter::Project if hides_load || hides_strain => Limiter::None,
+        _ => limiter,
+    }
+}
+
 /// The limiter of one cloth that acts after a step.
 #[derive(Debug)]
 pub(crate) enum Limit {
@@ -27,10 +42,15 @@ pub(crate) enum Limit {
 }
 
 impl Limit {
-    /// The limiter of a cloth whose first particle is `base`, if it has one that acts after a step, given which particles
-    /// something holds.
-    pub(crate) fn of(cloth: &Cloth, base: u32, is_held: impl Fn(u32) -> bool) -> Option<Self> {
-        match cloth.material.limiter {
+    /// The limiter of a cloth whose first particle is `base`, if it has one that acts after a step, given whether steps are
+    /// implicit and which particles something holds.
+    pub(crate) fn of(
+        cloth: &Cloth,
+        base: u32,
+        is_implicit: bool,
+        is_held: impl Fn(u32) -> bool,
+    ) -> Option<Self> {
+        match acting(cloth, is_implicit) {
             Limiter::None | Limiter::Stiffen => None,
             Limiter::Provot => Some(Self::Provot(Provot::new(cloth, base))),
             Limiter::Project => Some(Self::Project(Project::new(cloth, base, is_held))),
@@ -50,13 +70,13 @@ impl Limit {
         }
     }
 
-    /// The longest step (s) that a cloth's limiter keeps up with if its springs have these rest lengths (m).
+    /// The longest explicit step (s) that a cloth's limiter keeps up with if its springs have these rest lengths (m).
     pub(crate) fn longest_step(
         cloth: &Cloth,
         gravity: f64,
         rest_lengths: impl Iterator<Item = f64>,
     ) -> f64 {
-        match cloth.material.limiter {
+        match acting(cloth, false) {
             Limiter::Project => Project::longest_step(cloth, gravity, rest_lengths),
             Limiter::None | Limiter::Stiffen | Limiter::Provot => f64::INFINITY,
         }

@@ -37,10 +37,11 @@ impl Simulation {
     }
 
     /// The mesh edges of a cloth that are longer than its deformation rate allows, by more than a tenth of a percent of
-    /// their rest length; the worst first. None where the limiter is [`Limiter::None`](crate::Limiter::None).
+    /// their rest length; the worst first. None where no limiter acts ([`Limiter::None`](crate::Limiter::None), or cloth that breaks before it).
     #[must_use]
     pub fn overstretched_edges(&self, cloth: usize) -> Vec<OverstretchedEdge> {
-        overstretched(&self.cloths[cloth], self.bases[cloth], &self.state)
+        let is_implicit = self.method.is_implicit();
+        overstretched(&self.cloths[cloth], self.bases[cloth], &self.state, is_implicit)
     }
 
     /// The present stiffness (N/m) of each spring of a cloth: what equation 6 makes of it, if it is the limiter.

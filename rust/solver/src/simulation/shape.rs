@@ -153,14 +153,14 @@ impl Simulation {
     /// The limiter of a cloth: its order is that of the rest lengths as they were given.
     pub(super) fn limit_of(&mut self, cloth: usize) -> Option<Limit> {
         let (own, base) = (&mut self.cloths[cloth], self.bases[cloth]);
-        let system = &self.system;
+        let (system, is_implicit) = (&self.system, self.method.is_implicit());
         let is_held = |particle: u32| system.is_held(particle as usize);
         let Some(rest) = &self.rests[cloth] else {
-            return Limit::of(own, base, is_held);
+            return Limit::of(own, base, is_implicit, is_held);
         };
         let present: Vec<f64> = own.springs.iter().map(|spring| spring.rest_length).collect();
         rest.put_given(own);
-        let limit = Limit::of(own, base, is_held);
+        let limit = Limit::of(own, base, is_implicit, is_held);
         for (spring, present) in own.springs.iter_mut().zip(present) {
             spring.rest_length = present;
         }

@@ -5,7 +5,7 @@ use crate::certificate::length;
 use crate::law::Spring;
 use crate::law::spring::Law;
 use crate::material::{SpringKind, StiffnessFrom};
-use crate::tear::Load;
+use crate::tear::{Carried, Load};
 
 impl Simulation {
     /// The largest tension (N) at each vertex of a cloth, 0 where all is slack: the pull of its stretch and shear springs
@@ -22,7 +22,8 @@ impl Simulation {
                 *most = most.max(pull);
             }
         }
-        for (spring, pull) in self.pulls(cloth) {
+        let pulls = self.pulls(cloth).filter(|(spring, _)| spring.kind != SpringKind::Bend);
+        for (spring, pull) in pulls {
             for end in spring.ends {
                 let most = &mut tension[end as usize];
                 *most = most.max(pull);
@@ -31,7 +32,7 @@ impl Simulation {
         tension.into_iter().map(|tension| tension as f32).collect()
     }
 
-    /// The tension (N) of each stretch and shear spring of a cloth, as [`Self::vertex_tension`] has it.
+    /// The tension (N) of each stretch, shear and bend spring of a cloth, as [`Self::vertex_tension`] has it.
     fn pulls(&self, cloth: usize) -> impl Iterator<Item = (&Spring, f64)> {
         let (base, particles) = (self.bases[cloth], self.particles(cloth));
         let cloth = &self.cloths[cloth];
@@ -39,8 +40,7 @@ impl Simulation {
         let is_ours = move |(ends, _): &([u32; 2], f64)| particles.contains(&(ends[0] as usize));
         let mut held = self.method.held_edges().filter(is_ours);
         let mut next = held.next();
-        let counts =
-            |spring: &&Spring| matches!(spring.kind, SpringKind::Stretch | SpringKind::Shear);
+        let counts = |spring: &&Spring| spring.kind != SpringKind::Sewing;
         cloth.springs.iter().filter(counts).map(move |spring| {
             let ratio = length(&self.state, spring.ends, base) / spring.rest_length;
             let stiffness = law.stiffness_at(spring.stiffness, ratio);
@@ -56,21 +56,25 @@ impl Simulation {
         })
     }
 
-    /// How the edges of a cloth's faces are loaded, sorted by their ends. Of fabric, the stress is the largest along the edge of the
-    /// triangles beside it, and the tension that over a width as that of their sides, if nothing else holds it.
+    /// How the edges of a cloth's faces are loaded, sorted by their ends: by their own springs and their part of those beside them.
+    /// Of fabric, the stress is the largest along the edge of the triangles beside it, and the tension that over a width as that of
+    /// their sides, if nothing else holds it.
     pub(super) fn edge_loads(&self, cloth: usize) -> Vec<Load> {
-        let base = self.bases[cloth];
-        let stretch = self.pulls(cloth).filter(|(spring, _)| spring.kind == SpringKind::Stretch);
+        let (base, own, positions) =
+            (self.bases[cloth], &self.cloths[cloth], self.positions(cloth));
+        let carried = Carried::new(&own.mesh, own.rest(), &positions, self.pulls(cloth)).tensions();
+        let stretch = own.springs.iter().filter(|spring| spring.kind == SpringKind::Stretch);
         // Stretch springs are sorted by their ends.
         let mut loads: Vec<Load> = stretch
+            .zip(carried)
             .zip(self.edge_widths(cloth))
-            .map(|((spring, pull), width)| {
+            .map(|((spring, tension), width)| {
                 let ratio = length(&self.state, spring.ends, base) / spring.rest_length;
                 Load {
                     ends: spring.ends,
-                    tension: pull,
+                    tension,
                     strain: ratio - 1.0,
-                    stress: pull / width.max(f64::MIN_POSITIVE),
+                    stress: tension / width.max(f64::MIN_POSITIVE),
                 }
             })
             .collect();

@@ -6,12 +6,14 @@
 //!
 //! Source: the plane across the edge is that of Müller et al. 2007; masses, rest lengths and materials stay what they were.
 
+mod carried;
 mod fan;
 mod pieces;
 mod split;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use carried::Carried;
 pub(crate) use fan::Fan;
 pub(crate) use pieces::{pieces, spread};
 pub(crate) use split::Split;
@@ -24,10 +26,10 @@ use crate::scatter::scattered;
 /// When a cloth tears.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tear {
-    /// Tension (N) of an edge beyond which it breaks; of fabric, the stress along it over a width as that of the triangle's
+    /// Tension (N) of an edge, its own spring's and its part of those beside it, beyond which it breaks; of fabric, the stress along it over a width as that of the triangle's
     /// sides. No tension breaks it if `None`.
     pub force: Option<f64>,
-    /// Strain beyond which an edge breaks; none if `None`.
+    /// Strain beyond which an edge breaks; none if `None`. If it is not below the deformation rate, the limiter does not act.
     pub strain: Option<f64>,
     /// Stress (N/m), tension over the width that an edge stands for, beyond which it breaks; none if `None`. Unlike a force it does
     /// not depend on how fine the mesh is, as long as the stress is smooth: at the end of a tear it is larger on finer meshes.

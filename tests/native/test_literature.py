@@ -259,6 +259,12 @@ def test_an_implicit_rule_bears_steps_in_which_an_explicit_one_bursts(bake):
     assert run.column("kinetic_energy")[-1] < 0.02 * run.column("kinetic_energy").max()
 
 
+def below_ball(positions):
+    """How many vertices the ball of the tearing scene has below its middle at the last frame."""
+    away = np.linalg.norm(positions[:, :2], axis=1)
+    return ((away < 0.25) & (positions[:, 2] < 0.35 - 1.2)).sum()
+
+
 def test_cloth_tears_where_it_is_strained_beyond_its_limit_and_loses_no_face(bake):
     run = bake("literature/tearing")
     faces = np.array(faces_of(run.out / "sheet.obj"))
@@ -277,5 +283,6 @@ def test_cloth_tears_where_it_is_strained_beyond_its_limit_and_loses_no_face(bak
     unbroken = bake("literature/tearing", "tear.enabled=false")
     assert unbroken.positions.shape[1] == 31 * 31
     assert unbroken.worst > 0.5
-    lowest = [each.positions[-1][:, 2].min() for each in (run, unbroken)]
-    assert lowest[1] < -1.0 and lowest[0] > lowest[1] + 0.3, "the ball gets through and leaves it"
+    # Where strips swing that hang from the held edges is no matter: what the ball has left is what it lies on.
+    below = [below_ball(each.positions[-1]) for each in (run, unbroken)]
+    assert below[0] == 0 and below[1] > 30, "the ball gets through and leaves it"

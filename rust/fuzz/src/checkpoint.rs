@@ -83,6 +83,9 @@ const NUMBERS: [u64; 14] = [
 fn spoiled(source: &mut Unstructured<'_>, good: &[u8]) -> Vec<u8> {
     let mut bytes = good[..good.len() - 8].to_vec();
     for _ in 0..=any::<u8>(source) % 4 {
+        if bytes.len() < 4 {
+            break;
+        }
         // Everything but the header stands at multiples of four bytes.
         let at = 4 * (usize::from(any::<u16>(source)) % (bytes.len() / 4));
         let number = one_of(source, &NUMBERS).to_le_bytes();

@@ -46,29 +46,34 @@ impl Simulation {
                 "is of another scene or other settings; accepted: the one that it was made from",
             ));
         }
-        let damaged = || Error::BadCheckpoint("is damaged; accepted: a whole one");
-        let before = self.tears();
-        let undo = (before != checkpoint.tears).then(|| self.saved());
-        if self.tear_alike(&checkpoint.tears).is_none() {
+        let (tears, undo) = (self.tears(), self.saved());
+        if self.tear_alike(&checkpoint.tears).is_some() && self.take_if_whole(checkpoint) {
+            if self.has_energies() {
+                return Ok(());
+            }
+        } else if tears == self.tears() {
             return Err(damaged());
         }
-        let taken = self.take_if_whole(checkpoint, damaged());
-        if let (Err(_), Some(undo)) = (&taken, undo) {
-            // What was is whole.
-            let _ = self.tear_alike(&before);
-            let _ = self.take_if_whole(undo, damaged());
-        }
-        taken
+        // What was is whole.
+        let _ = self.tear_alike(&tears);
+        self.take_if_whole(undo);
+        Err(damaged())
     }
 
-    fn take_if_whole(&mut self, checkpoint: Checkpoint, damaged: Error) -> Result<()> {
-        let shape = self.read_shape(&checkpoint.shape).ok_or_else(|| damaged.clone())?;
-        if !self.fits(&checkpoint) {
-            return Err(damaged);
+    fn take_if_whole(&mut self, checkpoint: Checkpoint) -> bool {
+        let Some(shape) = self.read_shape(&checkpoint.shape) else { return false };
+        let fits = self.fits(&checkpoint);
+        if fits {
+            self.take(checkpoint, shape);
+            self.intersect();
         }
-        self.take(checkpoint, shape);
-        self.intersect();
-        Ok(())
+        fits
+    }
+
+    /// Whether the energies of the present state are numbers: those of finite positions and velocities may be too large for one.
+    fn has_energies(&self) -> bool {
+        let certificate = self.certificate();
+        certificate.kinetic_energy.is_finite() && certificate.potential_energy.is_finite()
     }
 
     /// Takes up a checkpoint that fits; intersections are then to be counted.
@@ -115,6 +120,10 @@ impl Simulation {
             && self.pins.fit(&checkpoint.pins, &checkpoint.pin_stiffness)
             && remembers_alike
     }
+}
+
+fn damaged() -> Error {
+    Error::BadCheckpoint("is damaged; accepted: a whole one")
 }
 
 #[cfg(test)]
@@ -220,6 +229,34 @@ mod tests {
         }
         simulation.restore(&told.checkpoint()).expect("a whole one");
         assert!(simulation.checkpoint() == told.checkpoint());
+    }
+
+    /// Each number is finite, what comes of them is not.
+    #[test]
+    fn a_checkpoint_whose_energies_are_no_numbers_is_refused_and_undone() {
+        let spoils: [fn(&mut Checkpoint); 3] = [
+            |bad| bad.state.position.0[2][1] = 1e200,
+            |bad| bad.state.velocity.0[0][2] = -1e160,
+            |bad| bad.gravity.z = f64::MAX,
+        ];
+        for integrator in [IntegratorKind::Verlet, IntegratorKind::Bdf2] {
+            let settings = Settings { threads: 1, integrator, ..Settings::default() };
+            let cloth = of(|cloth| cloth).cloth(0).clone();
+            let make = || Simulation::new(vec![cloth.clone()], Vec::new(), settings.clone());
+            let [mut simulation, mut other] = [(); 2].map(|()| make().expect("a simulation"));
+            simulation.advance().expect("a frame");
+            other.advance().expect("a frame");
+            let before = simulation.checkpoint();
+            for (number, spoil) in spoils.iter().enumerate() {
+                let mut bad = Checkpoint::from_bytes(&before).expect("a whole one");
+                spoil(&mut bad);
+                let refused = simulation.restore(&bad.to_bytes());
+                assert_eq!(refused, Err(damaged()), "{number}");
+                assert!(simulation.checkpoint() == before, "{number}");
+            }
+            let [one, two] = [&mut simulation, &mut other].map(|s| s.advance().expect("a frame"));
+            assert_eq!(one.hash, two.hash, "{integrator:?}");
+        }
     }
 
     /// The two triangles part at the corner that is not pinned.

@@ -104,6 +104,7 @@ def follow_files(cloths: Sequence[bpy.types.Object] | None = None) -> None:
 
     Undo, a file that is opened again and copies know of an earlier bake only. What cannot is told, and holds up no other.
     """
+    tear_fit.forget()
     for obj in registry.local_cloths() if cloths is None else cloths:
         path = played_path(obj)
         if path:

@@ -100,6 +100,15 @@ def _activate(obj: bpy.types.Object, modifier: bpy.types.Modifier | None) -> Non
         obj.modifiers.active = modifier
 
 
+def is_in_order(obj: bpy.types.Object) -> bool:
+    """Whether an object has all that a torn cloth needs, from what splits to what mends."""
+    found = find(obj)
+    if found is None or found.tear is None or found.mend is None:
+        return False
+    names = [one.name for one in (found.target, found.tear, found.cache, found.mend)]
+    return [modifier.name for modifier in obj.modifiers if modifier.name in names] == names
+
+
 def remove_tear(obj: bpy.types.Object) -> None:
     """Take that away."""
     for modifier in [m for m in obj.modifiers if _is_tear(m) or _is_mend(m)]:

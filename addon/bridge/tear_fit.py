@@ -71,13 +71,12 @@ def _marked(mesh: bpy.types.Mesh) -> set[tuple[int, int]] | None:
 
 def object_trouble(obj: bpy.types.Object, layout: Layout | None) -> str:
     """Why an object's marks and modifiers do not play a bake in this layout, which fits its mesh; empty if they do."""
-    found = slot.find(obj)
     if layout is None or layout.is_whole:
-        if found is None or (found.tear is None and found.mend is None):
+        if not slot.splits(obj):
             return ""
         return f"its bake is whole, and it still has the modifiers of a torn one: {_remedy(obj)}"
     kind = tear_groups.ALL if layout.edges is None else tear_groups.TORN
-    if found is None or not _splits(obj, found, kind):
+    if not _splits(obj, kind):
         return (
             f'the modifiers that split and mend it ("{TEAR_MODIFIER}", "{MEND_MODIFIER}") are not those of its bake, '
             f"or were moved, changed or switched off: {_remedy(obj)}"
@@ -87,15 +86,14 @@ def object_trouble(obj: bpy.types.Object, layout: Layout | None) -> str:
     return ""
 
 
-def _splits(obj: bpy.types.Object, found: slot.Slot, kind: str) -> bool:
-    """Whether an object has what splits by this kind before its cache, and what mends after it, as they were made."""
-    if found.tear is None or found.mend is None:
+def _splits(obj: bpy.types.Object, kind: str) -> bool:
+    """Whether an object has what splits by this kind, and what mends, as they were made."""
+    if not slot.is_in_order(obj):
         return False
-    stack = [modifier.name for modifier in obj.modifiers]
-    places = [stack.index(one.name) for one in (found.tear, found.cache, found.mend)]
+    found = slot.find(obj)
     groups = found.tear.node_group, found.mend.node_group
-    are_ours = tear_groups.kind_of(groups[0]) == kind and all(map(tear_groups.is_intact, groups))
-    return are_ours and places == sorted(places) and _are_on(found)
+    is_right = tear_groups.kind_of(groups[0]) == kind and all(map(tear_groups.is_intact, groups))
+    return is_right and _are_on(found)
 
 
 def _are_on(found: slot.Slot) -> bool:

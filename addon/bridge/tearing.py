@@ -81,9 +81,7 @@ def show(obj: bpy.types.Object, shown: Layout | None) -> None:
         _mark(obj.data, shown.edges)
     elif may_mark(obj):
         _unmark(obj.data)
-    found = slot.find(obj)
-    if found.tear is None or found.mend is None:
-        found = slot.add_tear(obj)
+    found = slot.find(obj) if slot.is_in_order(obj) else slot.add_tear(obj)
     for modifier, kind in ((found.tear, _kind(shown.edges)), (found.mend, tear_groups.MEND)):
         group = tear_groups.ensure(kind)
         if modifier.node_group != group:

@@ -1,7 +1,6 @@
 """A torn bake as it plays: only what one vertex was is joined, what does not fit is said, and every Blender shows the same."""
 
 import os
-from pathlib import Path
 
 END = 14
 EVERY = tuple(range(1, END + 1))
@@ -103,7 +102,7 @@ def touch(folder):
             "touching": [touching(obj, look) for look in baked],
             "first": list(baked[0]["positions"]) == [x for v in obj.data.vertices for x in v.co],
             "faces": baked[0]["faces"] == [list(face.vertices) for face in obj.data.polygons],
-            "names": sorted(n for n in mesh.attributes.keys() if n.startswith("boucle")),
+            "names": sorted(a.name for a in mesh.attributes if a.name.startswith("boucle")),
             "group": obj.modifiers["Boucle Mend"].node_group.name,
         }  # fmt: skip
         bpy.data.objects.remove(obj)

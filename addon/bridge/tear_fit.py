@@ -7,7 +7,7 @@ from array import array
 import bpy
 
 from .._identifiers import MEND_MODIFIER, TEAR_ATTRIBUTE, TEAR_MODIFIER
-from ..core import drift
+from ..core import drift, points
 from ..core.points import Points
 from ..core.torn import Layout
 from . import mesh_arrays, slot, tear_groups
@@ -25,8 +25,13 @@ def forget() -> None:
 
 def digest(mesh: bpy.types.Mesh) -> str:
     """A digest of the faces and edges of a mesh as they are numbered, upon which depends how Blender splits it."""
-    faces = mesh_arrays.topology(mesh)
-    return drift.digest(faces.starts, faces.corners, mesh_arrays.edges(mesh))
+    starts = points.empty("i", len(mesh.polygons))
+    corners, ends = points.empty("i", len(mesh.loops)), points.empty("i", 2 * len(mesh.edges))
+    mesh.polygons.foreach_get("loop_start", starts)
+    # Two hundred times as fast as by loops and edges.
+    mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
+    mesh.attributes[".edge_verts"].data.foreach_get("value", ends)
+    return drift.digest(starts, corners, ends)
 
 
 def pairs(edges: Points) -> set[tuple[int, int]]:
@@ -64,9 +69,12 @@ def _marked(mesh: bpy.types.Mesh) -> set[tuple[int, int]] | None:
         return None
     marks = array("b", bytes(len(mesh.edges)))
     attribute.data.foreach_get("value", marks)
-    ends = mesh_arrays.edges(mesh)
-    torn = [number for number, mark in enumerate(marks) if mark]
-    return pairs([ends[2 * number + side] for number in torn for side in (0, 1)])
+    ends, torn, known = mesh_arrays.edges(mesh), [], marks.tobytes()
+    number = known.find(1)
+    while number >= 0:
+        torn.extend(ends[2 * number : 2 * number + 2])
+        number = known.find(1, number + 1)
+    return pairs(torn)
 
 
 def object_trouble(obj: bpy.types.Object, layout: Layout | None) -> str:

@@ -20,6 +20,7 @@ from .bridge import (
     safe_step,
     saving,
     takes,
+    tear_fit,
     thickness_view,
 )
 
@@ -38,6 +39,7 @@ def depsgraph_update_post(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgrap
     """Give back the rest shape when the artist starts to edit, or moves the mesh within its object."""
     thickness_view.forget()
     overlay_view.forget()
+    tear_fit.forget()
     if registry.all_cloths() and not runtime.busy and not runtime.rendering:
         live.follow_edits(depsgraph)
 
@@ -75,6 +77,7 @@ def load_pre(*_: Any) -> None:
     certificate.forget()
     findings.forget()
     takes.forget()
+    tear_fit.forget()
     runtime.rendering.clear()
     runtime.busy.discard("grab")
 
@@ -94,6 +97,7 @@ def undo_post(scene: bpy.types.Scene, *_: Any) -> None:
     """Undo and redo replace Blender's data: look at it anew."""
     registry.forget()
     safe_step.forget()
+    tear_fit.forget()
     thickness_view.follow()
     overlay_view.follow()
     if live.any_session() or registry.all_cloths():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import uuid
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -15,7 +16,7 @@ from ..core.cache_paths import CacheFiles
 from ..core.progress import size
 from ..core.refusal import Refusal, cannot_write
 from ..core.torn import Layout
-from . import record, registry, runtime, slot, tearing
+from . import record, registry, runtime, slot, tear_fit, tearing
 
 
 def absolute(obj: bpy.types.Object, path: str) -> str:
@@ -56,7 +57,7 @@ def ensure_identity() -> None:
 
 
 def attach(obj: bpy.types.Object, pc2_path: str, remembered: dict[str, Any]) -> None:
-    """Let the object play a bake, and keep what it remembers.
+    """Let the object play a bake, and keep what it remembers; others that play its files follow.
 
     Raises:
         Refusal: It is of a torn cloth, and damaged, or the mesh cannot bear the mark of its tears.
@@ -67,6 +68,9 @@ def attach(obj: bpy.types.Object, pc2_path: str, remembered: dict[str, Any]) -> 
     slot.play(slot.find(obj).cache, path, int(remembered["first"]))
     obj.boucle.bake_record = json.dumps(remembered)
     obj.update_tag()
+    path = played_path(obj)
+    others = (other for other in registry.local_cloths() if other != obj)
+    follow_files([other for other in others if played_path(other) == path])
 
 
 def detach(obj: bpy.types.Object) -> None:
@@ -87,19 +91,43 @@ def reattach(obj: bpy.types.Object) -> bool:
     remembered = report.read(files.report).get("bake")
     if trouble(obj, files) or not remembered:
         return False
-    attach(obj, files.pc2, remembered)
+    try:
+        attach(obj, files.pc2, remembered)
+    except Refusal as refusal:
+        _tell(obj, refusal)
+        return False
     return True
 
 
-def follow_files() -> None:
-    """Remember what the bakes on disk are made from: undo, and a file that is opened again, know of an earlier bake only."""
-    for obj in registry.local_cloths():
+def follow_files(cloths: Sequence[bpy.types.Object] | None = None) -> None:
+    """Remember what the bakes on disk are made from, and split as they are torn; of all local cloths if none are given.
+
+    Undo, a file that is opened again and copies know of an earlier bake only. What cannot is told, and holds up no other.
+    """
+    tear_fit.forget()
+    for obj in registry.local_cloths() if cloths is None else cloths:
         path = played_path(obj)
-        remembered = _bake_of(cache_paths.files_of(path).report) if path else None
-        if remembered and remembered.get("bake") != record_of(obj).get("bake"):
-            tearing.show(obj, torn.read(cache_paths.files_of(path).tear))
-            slot.find(obj).cache.frame_start = float(remembered["first"])
-            obj.boucle.bake_record = json.dumps(remembered)
+        if path:
+            try:
+                _follow(obj, cache_paths.files_of(path))
+            except Refusal as refusal:
+                _tell(obj, refusal)
+
+
+def _follow(obj: bpy.types.Object, files: CacheFiles) -> None:
+    remembered = _bake_of(files.report)
+    if remembered and remembered.get("bake") != record_of(obj).get("bake"):
+        slot.find(obj).cache.frame_start = float(remembered["first"])
+        obj.boucle.bake_record = json.dumps(remembered)
+    known = torn.read(files.tear)
+    if not tear_fit.mesh_trouble(obj.data, known) and tear_fit.object_trouble(obj, known):
+        tearing.show(obj, known)
+
+
+def _tell(obj: bpy.types.Object, refusal: Refusal) -> None:
+    """Say it on the console: this comes of no button."""
+    said = str(refusal)
+    runtime.warn(said if said.startswith(f'"{obj.name}"') else f'"{obj.name}": {said}')
 
 
 def _bake_of(path: str) -> dict[str, Any] | None:
@@ -169,14 +197,16 @@ def problem(obj: bpy.types.Object) -> str:
     path = played_path(obj)
     if not path:
         return ""
-    found = trouble(obj, cache_paths.files_of(path))
+    files = cache_paths.files_of(path)
+    found = trouble(obj, files) or tear_fit.object_trouble(obj, torn.read(files.tear))
     return f'"{obj.name}": {found}' if found else ""
 
 
 def trouble(obj: bpy.types.Object, files: CacheFiles) -> str:
     """Why Blender would not play a cache on the object; empty if it would."""
     mesh = obj.data
-    return torn.check(files.pc2, files.tear, len(mesh.vertices), len(mesh.loops))
+    found = torn.check(files.pc2, files.tear, len(mesh.vertices), len(mesh.loops))
+    return found or tear_fit.mesh_trouble(mesh, torn.read(files.tear))
 
 
 def layout(obj: bpy.types.Object) -> Layout | None:

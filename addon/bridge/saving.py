@@ -10,12 +10,14 @@ import bpy
 from ..core import cache_paths
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, cannot_write
-from . import cache, display, live, registry, rest, runtime, slot, takes, vertex_attributes
+from . import cache, display, live, registry, rest, runtime, slot, takes, tearing, vertex_attributes
 
 
 def before_save(path: str) -> None:
     """Put rest shapes in place, and bring caches of the unsaved session beside the file."""
     live.hide_all()
+    for obj in registry.local_cloths():
+        tearing.tidy(obj.data)
     cache.ensure_identity()
     if path:
         _bring_along(path)
@@ -43,6 +45,7 @@ def after_load() -> None:
     for obj in registry.local_cloths():
         rest.put_back(obj.data)
         vertex_attributes.hide(obj.data)
+        tearing.tidy(obj.data)
         found = slot.find(obj)
         if found is None:
             continue
@@ -73,9 +76,11 @@ def adopt(obj: bpy.types.Object) -> None:
         Refusal: There is nothing to copy, or it cannot be written.
     """
     played = cache.played_path(obj)
-    trouble = cache.problem(obj)
-    if not played or trouble:
-        raise Refusal(trouble or f'"{obj.name}" plays no bake that could be copied')
+    if not played:
+        raise Refusal(f'"{obj.name}" plays no bake that could be copied')
+    trouble = cache.trouble(obj, cache_paths.files_of(played))
+    if trouble:
+        raise Refusal(f'"{obj.name}": {trouble}')
     files = cache.own_files(obj)
     record = cache.record_of(obj)
     if not record:

@@ -1,8 +1,8 @@
 """The slot: the modifiers that stand where the simulation belongs in a cloth's stack.
 
 First the node group that stores positions as `boucle_target`, then the Mesh Cache that plays a result; of a torn cloth, around
-it, a node group that splits edges and a Weld. What is above (armature, hooks, lattices) moves the pins and the rest shape; what
-is below (subdivision, thickness) works on the simulated cloth.
+it, a node group that splits edges and one that mends. What is above (armature, hooks, lattices) moves the pins and the rest
+shape; what is below (subdivision, thickness) works on the simulated cloth.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class Slot(NamedTuple):
     cache: bpy.types.MeshCacheModifier
     tear: bpy.types.NodesModifier | None
     """Of a torn cloth, and so the next."""
-    mend: bpy.types.WeldModifier | None
+    mend: bpy.types.NodesModifier | None
 
     @property
     def last(self) -> bpy.types.Modifier:
@@ -61,7 +61,7 @@ def ensure(obj: bpy.types.Object) -> Slot:
     if found is not None:
         return found
     remove(obj)
-    place = _place(obj)
+    place, active = _place(obj), obj.modifiers.active
     target = obj.modifiers.new(TARGET_MODIFIER, "NODES")
     target.node_group = target_group.ensure()
     target.show_expanded = False
@@ -73,23 +73,40 @@ def ensure(obj: bpy.types.Object) -> Slot:
     silence(cache)
     for offset, name in enumerate((target.name, cache.name)):
         obj.modifiers.move(obj.modifiers.find(name), place + offset)
+    _activate(obj, active)
     return find(obj)
 
 
 def add_tear(obj: bpy.types.Object) -> Slot:
     """What a torn cloth needs around the Mesh Cache."""
     remove_tear(obj)
-    cache = find(obj).cache.name
+    cache, active = find(obj).cache.name, obj.modifiers.active
     tear = obj.modifiers.new(TEAR_MODIFIER, "NODES")
     tear.node_group = tear_groups.ensure(tear_groups.ALL)
-    mend = obj.modifiers.new(MEND_MODIFIER, "WELD")
-    mend.mode = "ALL"
+    mend = obj.modifiers.new(MEND_MODIFIER, "NODES")
+    mend.node_group = tear_groups.ensure(tear_groups.MEND)
     for modifier in (tear, mend):
         modifier.show_expanded = modifier.show_in_editmode = False
     place = obj.modifiers.find(cache)
     for offset, name in enumerate((tear.name, cache, mend.name)):
         obj.modifiers.move(obj.modifiers.find(name), place + offset)
+    _activate(obj, active)
     return find(obj)
+
+
+def _activate(obj: bpy.types.Object, modifier: bpy.types.Modifier | None) -> None:
+    """A new modifier becomes the active one: let that be the artist's again."""
+    if modifier is not None:
+        obj.modifiers.active = modifier
+
+
+def is_in_order(obj: bpy.types.Object) -> bool:
+    """Whether an object has all that a torn cloth needs, from what splits to what mends."""
+    found = find(obj)
+    if found is None or found.tear is None or found.mend is None:
+        return False
+    names = [one.name for one in (found.target, found.tear, found.cache, found.mend)]
+    return [modifier.name for modifier in obj.modifiers if modifier.name in names] == names
 
 
 def remove_tear(obj: bpy.types.Object) -> None:
@@ -98,12 +115,21 @@ def remove_tear(obj: bpy.types.Object) -> None:
         obj.modifiers.remove(modifier)
 
 
+def splits(obj: bpy.types.Object) -> bool:
+    """Whether an object has what a torn cloth needs, or a part of it."""
+    return any(_is_tear(modifier) or _is_mend(modifier) for modifier in obj.modifiers)
+
+
 def _is_tear(modifier: bpy.types.Modifier) -> bool:
-    return modifier.type == "NODES" and bool(tear_groups.kind_of(modifier.node_group))
+    return _kind(modifier) in (tear_groups.TORN, tear_groups.ALL)
 
 
 def _is_mend(modifier: bpy.types.Modifier) -> bool:
-    return modifier.type == "WELD" and modifier.name.startswith(MEND_MODIFIER)
+    return _kind(modifier) == tear_groups.MEND
+
+
+def _kind(modifier: bpy.types.Modifier) -> str:
+    return tear_groups.kind_of(modifier.node_group) if modifier.type == "NODES" else ""
 
 
 def show(found: Slot, on: bool) -> None:

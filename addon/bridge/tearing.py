@@ -1,4 +1,4 @@
-"""A torn cloth in Blender: its mesh split by a node group, moved by the slot's Mesh Cache, and welded where it holds together.
+"""A torn cloth in Blender: its mesh split by a node group, moved by the slot's Mesh Cache, and mended where it holds together.
 
 The artist's mesh keeps its vertices. It bears one more attribute as long as it plays a bake, which tells the torn edges; a mesh
 that cannot bear it, because it is linked or others use it, is split along all of its edges, and so is every mesh live and in an
@@ -13,20 +13,15 @@ from collections.abc import Sequence
 import bmesh
 import bpy
 
-from .._identifiers import TEAR_ATTRIBUTE, TEAR_MODIFIER
+from .._identifiers import ORIGIN_ATTRIBUTE, TARGET_ATTRIBUTE, TEAR_ATTRIBUTE, TEAR_MODIFIER
 from ..core import points
 from ..core.points import Points
 from ..core.refusal import Refusal
 from ..core.torn import Layout
-from . import mesh_arrays, slot, tear_groups
+from . import mesh_arrays, slot, tear_fit, tear_groups
 
 _CORNER = "boucle_corner"
 """Attribute of a mesh that is split to learn where its corners go."""
-
-_APART = 1e-6
-"""What is nearer (m) is one vertex."""
-_PRECISION = 2.5e-7
-"""Two steps of a float32 as a part of its value: where coordinates are so large that less is lost, the distance grows."""
 
 
 def layout(mesh: bpy.types.Mesh, torn: Sequence[tuple[int, int]] | None) -> Layout:
@@ -51,7 +46,8 @@ def layout(mesh: bpy.types.Mesh, torn: Sequence[tuple[int, int]] | None) -> Layo
         placed = array("i", bytes(4 * count))
         for number, point in zip(numbers, at, strict=True):
             placed[number] = point
-        return Layout(len(mesh.vertices), len(split.vertices), placed, edges)
+        shape = tear_fit.digest(mesh)
+        return Layout(len(mesh.vertices), len(split.vertices), placed, edges, shape)
     finally:
         bpy.data.scenes.remove(scene)
         bpy.data.objects.remove(obj)
@@ -71,7 +67,7 @@ def may_mark(obj: bpy.types.Object) -> bool:
 
 
 def show(obj: bpy.types.Object, shown: Layout | None) -> None:
-    """Split and weld the object as a cache wants it; None, or a cloth that stayed whole, takes all of that away.
+    """Split and mend the object as a cache wants it; None, or a cloth that stayed whole, takes all of that away.
 
     Raises:
         Refusal: The mesh cannot tell which of its edges are torn.
@@ -80,25 +76,22 @@ def show(obj: bpy.types.Object, shown: Layout | None) -> None:
         _take_away(obj)
         return
     if shown.edges is not None and not may_mark(obj):
-        _refuse_unmarked(obj)
+        _refuse_unmarked(obj, shown)
     elif shown.edges is not None:
         _mark(obj.data, shown.edges)
     elif may_mark(obj):
         _unmark(obj.data)
-    found = slot.find(obj)
-    if found.tear is None or found.mend is None:
-        found = slot.add_tear(obj)
-    group = tear_groups.ensure(_kind(shown.edges))
-    if found.tear.node_group != group:
-        found.tear.node_group = group
-    found.mend.merge_threshold = _distance(obj)
-    for modifier in (found.tear, found.mend):
+    found = slot.find(obj) if slot.is_in_order(obj) else slot.add_tear(obj)
+    for modifier, kind in ((found.tear, _kind(shown.edges)), (found.mend, tear_groups.MEND)):
+        group = tear_groups.ensure(kind)
+        if modifier.node_group != group:
+            modifier.node_group = group
         modifier.show_viewport = modifier.show_render = True
 
 
-def _refuse_unmarked(obj: bpy.types.Object) -> None:
-    """A mesh of others may bear the mark already, as that of a linked cloth does."""
-    if obj.data.attributes.get(TEAR_ATTRIBUTE) is None:
+def _refuse_unmarked(obj: bpy.types.Object, shown: Layout) -> None:
+    """A mesh of others may bear the marks already, as that of a linked cloth does."""
+    if obj.data.is_editmode or not tear_fit.bears_marks(obj.data, shown):
         raise Refusal(
             f'"{obj.name}" cannot play this bake: its mesh is linked or has several users, so that it cannot tell '
             "which edges are torn: make it local and single-user, or bake again"
@@ -106,32 +99,32 @@ def _refuse_unmarked(obj: bpy.types.Object) -> None:
 
 
 def _take_away(obj: bpy.types.Object) -> None:
-    found = slot.find(obj)
-    if found is None or found.tear is None:
+    if slot.splits(obj):
+        slot.remove_tear(obj)
+        tear_groups.remove_unused()
+    tidy(obj.data)
+
+
+def tidy(mesh: bpy.types.Mesh) -> None:
+    """Remove the attributes that modifiers leave in a mesh when they are applied by hand, and marks that nothing needs."""
+    if mesh.library is not None or mesh.override_library is not None:
         return
-    slot.remove_tear(obj)
-    tear_groups.remove_unused()
-    mesh = obj.data
-    if mesh.library is None and mesh.override_library is None and not _is_needed(mesh):
+    is_marked = TEAR_ATTRIBUTE in mesh.attributes or ORIGIN_ATTRIBUTE in mesh.attributes
+    if is_marked and not any(o.data == mesh and slot.splits(o) for o in bpy.data.objects):
         _unmark(mesh)
+        _remove(mesh, ORIGIN_ATTRIBUTE)
+    _remove(mesh, TARGET_ATTRIBUTE)
 
 
-def _is_needed(mesh: bpy.types.Mesh) -> bool:
-    """Whether another object that has the mesh is torn as well."""
-    users = (other for other in bpy.data.objects if other.data == mesh)
-    slots = (slot.find(other) for other in users)
-    return any(found is not None and found.tear is not None for found in slots)
-
-
-def _distance(obj: bpy.types.Object) -> float:
-    """What is nearer (m) is welded: float32 must be able to tell it from nothing, or Blender's search passes it over."""
-    farthest = max((abs(part) for corner in obj.bound_box for part in corner), default=0.0)
-    return max(_APART, _PRECISION * farthest)
+def _remove(mesh: bpy.types.Mesh, name: str) -> None:
+    attribute = None if mesh.is_editmode else mesh.attributes.get(name)
+    if attribute is not None:
+        mesh.attributes.remove(attribute)
 
 
 def _mark(mesh: bpy.types.Mesh, edges: Points) -> None:
     """Store which edges are torn, given both ends of each."""
-    torn = {(min(pair), max(pair)) for pair in zip(edges[::2], edges[1::2], strict=True)}
+    torn = tear_fit.pairs(edges)
     attribute = mesh.attributes.get(TEAR_ATTRIBUTE)
     if attribute is not None and (attribute.domain, attribute.data_type) != ("EDGE", "BOOLEAN"):
         mesh.attributes.remove(attribute)
@@ -142,9 +135,11 @@ def _mark(mesh: bpy.types.Mesh, edges: Points) -> None:
     pairs = zip(ends[::2], ends[1::2], strict=True)
     attribute.data.foreach_set("value", [(min(pair), max(pair)) in torn for pair in pairs])
     mesh.update()
+    tear_fit.forget()
 
 
 def _unmark(mesh: bpy.types.Mesh) -> None:
+    tear_fit.forget()
     if mesh.is_editmode:
         edited = bmesh.from_edit_mesh(mesh)
         layer = edited.edges.layers.bool.get(TEAR_ATTRIBUTE)
@@ -152,9 +147,7 @@ def _unmark(mesh: bpy.types.Mesh) -> None:
             edited.edges.layers.bool.remove(layer)
             bmesh.update_edit_mesh(mesh)
         return
-    attribute = mesh.attributes.get(TEAR_ATTRIBUTE)
-    if attribute is not None:
-        mesh.attributes.remove(attribute)
+    _remove(mesh, TEAR_ATTRIBUTE)
 
 
 def sides(mesh: bpy.types.Mesh, shown: Layout) -> Points:

@@ -4,10 +4,10 @@ While a cloth is baked it is not known where it will tear: the cache holds a poi
 Split Edges makes them of all edges. At the end the same file holds the points of a mesh that is split along torn edges alone.
 Which corner is at which point is asked of Blender, and kept here: in whatever order it splits, nothing is guessed.
 
-Layout, little-endian: a magic line, one line of JSON (the counts), then int32 of the point of each corner, and int32 of both
-ends of each edge that is split, and a digest of all that. While the cache is replaced by one in another layout the file
-holds both, one after the other: that counts which has as many points as the cache, so that a kill at any moment leaves two
-files that fit.
+Layout, little-endian: a magic line, one line of JSON (the counts, and since version 2 a digest of the mesh's faces and edges),
+then int32 of the point of each corner, and int32 of both ends of each edge that is split, and a digest of all that. While the
+cache is replaced by one in another layout the file holds both, one after the other: that counts which has as many points as the
+cache, so that a kill at any moment leaves two files that fit.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import re
 from contextlib import suppress
 from functools import lru_cache
 from io import BytesIO
@@ -24,7 +25,8 @@ from . import pc2, points, whole_file
 from .points import Points
 from .refusal import CacheRefusal, Refusal, cannot_write
 
-_MAGIC = b"BOUCLE TEAR 1\n"
+_MAGIC = b"BOUCLE TEAR 2\n"
+_READABLE = (b"BOUCLE TEAR 1\n", _MAGIC)
 _DIGEST_BYTES = 16
 
 
@@ -38,6 +40,8 @@ class Layout(NamedTuple):
     """The point of each corner, int32."""
     edges: Points | None
     """Both ends of each edge that is split, int32, flat; None where all are."""
+    mesh: str = ""
+    """A digest of the faces and edges that are numbered so; empty if the file is of version 1 and does not tell."""
 
     @property
     def is_whole(self) -> bool:
@@ -64,6 +68,7 @@ def _block(layout: Layout) -> bytes:
         "points": layout.point_count,
         "corners": len(layout.points),
         "edges": None if layout.edges is None else len(layout.edges) // 2,
+        "mesh": layout.mesh,
     }
     parts = [layout.points] if layout.edges is None else [layout.points, layout.edges]
     data = b"".join(memoryview(part).cast("B").tobytes() for part in parts if len(part))
@@ -79,7 +84,7 @@ def read(path: str) -> Layout | None:
     """What the file says of the cache beside it; None if there is none.
 
     Raises:
-        CacheRefusal: It is damaged, or holds several layouts and the cache cannot be read.
+        CacheRefusal: It is damaged or of a later version, or holds several layouts and the cache cannot be read.
     """
     try:
         found = os.stat(path)
@@ -101,6 +106,9 @@ def _read(path: str, _written: int, _size: int, _file: int) -> tuple[Layout, ...
     except OSError as error:
         raise CacheRefusal(f'"{path}" cannot be read ({error.strerror}): bake again') from error
     source, layouts = BytesIO(content), []
+    version = re.match(rb"BOUCLE TEAR \d+\n", content)
+    if version and version[0] not in _READABLE:
+        raise CacheRefusal(f'"{path}" is of a later version of Boucle: use that one, or bake again')
     try:
         while not layouts or source.tell() < len(content):
             layouts.append(_read_block(source))
@@ -115,10 +123,11 @@ def _read_block(source: BytesIO) -> Layout:
     corners, edges = int(head["corners"]), head["edges"]
     placed, split = (source.read(max(0, size)) for size in (4 * corners, 8 * int(edges or 0)))
     block = source.getbuffer()[start : source.tell()]
-    if magic != _MAGIC or source.read(_DIGEST_BYTES) != _digest(block):
+    if magic not in _READABLE or source.read(_DIGEST_BYTES) != _digest(block):
         raise ValueError(head)
     ends = None if edges is None else points.integers(split)
-    return Layout(int(head["vertices"]), int(head["points"]), points.integers(placed), ends)
+    counts = int(head["vertices"]), int(head["points"])
+    return Layout(*counts, points.integers(placed), ends, str(head.get("mesh", "")))
 
 
 def check(pc2_path: str, tear_path: str, vertices: int, corners: int) -> str:

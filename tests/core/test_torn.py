@@ -1,5 +1,6 @@
 """The layout of torn caches: its file, the cache in another layout and back, and what is refused."""
 
+import hashlib
 import os
 from array import array
 from pathlib import Path
@@ -13,7 +14,7 @@ from boucle_addon.core.torn import Layout
 CORNERS = array("i", [0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6])
 FULL = Layout(8, 12, array("i", [0, 8, 9, 4, 1, 10, 11, 5, 2, 3, 7, 6]), None)
 WHOLE = Layout(8, 8, CORNERS, array("i"))
-TORN = Layout(8, 10, array("i", [0, 1, 5, 4, 8, 2, 6, 9, 2, 3, 7, 6]), array("i", [1, 5]))
+TORN = Layout(8, 10, array("i", [0, 1, 5, 4, 8, 2, 6, 9, 2, 3, 7, 6]), array("i", [1, 5]), "a1b2")
 
 
 @pytest.fixture(params=["numpy", "array"], autouse=True)
@@ -55,10 +56,11 @@ def test_a_layout_comes_back_from_its_file(tmp_path):
         assert list(found.points) == list(layout.points)
         assert (found.edges is None) == (layout.edges is None)
         assert list(found.edges if found.edges is not None else ()) == list(layout.edges or ())
+        assert found.mesh == layout.mesh
     for damaged in (
         b"",
-        b"BOUCLE TEAR 1\n",
-        b"BOUCLE TEAR 1\n{}\n",
+        b"BOUCLE TEAR 2\n",
+        b"BOUCLE TEAR 2\n{}\n",
         b"x" * 300,
         Path(path).read_bytes()[:-1],
         Path(path).read_bytes() * 2 + b"x",
@@ -67,6 +69,19 @@ def test_a_layout_comes_back_from_its_file(tmp_path):
         (tmp_path / "b.tear").write_bytes(damaged)
         with pytest.raises(Refusal, match=r"b\.tear\" is damaged"):
             torn.read(str(tmp_path / "b.tear"))
+
+
+def test_files_of_version_1_are_read_and_later_ones_named(tmp_path):
+    path = tmp_path / "a.tear"
+    head = b'BOUCLE TEAR 1\n{"vertices": 8, "points": 10, "corners": 12, "edges": 1}\n'
+    block = head + TORN.points.tobytes() + TORN.edges.tobytes()
+    path.write_bytes(block + hashlib.blake2b(block, digest_size=16).digest())
+    found = torn.read(str(path))
+    assert (found.vertex_count, found.point_count, found.mesh) == (8, 10, "")
+    assert (list(found.points), list(found.edges)) == (list(TORN.points), [1, 5])
+    path.write_bytes(b"BOUCLE TEAR 3\n{}\nsomething else")
+    with pytest.raises(Refusal, match="is of a later version of Boucle"):
+        torn.read(str(path))
 
 
 def test_a_cache_is_arranged_without_loss_and_never_joined_where_it_is_apart(tmp_path):

@@ -11,7 +11,7 @@ from typing import Any
 
 import bpy
 
-from ..core import cache_paths, drift, pc2, report, torn
+from ..core import bake_record, cache_paths, drift, pc2, report, torn
 from ..core.cache_paths import CacheFiles
 from ..core.progress import size
 from ..core.refusal import Refusal, cannot_write
@@ -48,10 +48,13 @@ def own_files(obj: bpy.types.Object) -> CacheFiles:
 
 
 def ensure_identity() -> None:
-    """Give every cloth of the file an identity of its own: of two that share one, the newer is the copy."""
+    """Give every cloth of the file an identity of its own: of two that share one, the newer is the copy.
+
+    It names files: what is none of ours, as in a file that somebody else has made, might name others'.
+    """
     taken: set[str] = set()
     for obj in sorted(registry.local_cloths(), key=lambda obj: obj.session_uid):
-        if not obj.boucle.uuid or obj.boucle.uuid in taken:
+        if not cache_paths.is_identity(obj.boucle.uuid) or obj.boucle.uuid in taken:
             obj.boucle.uuid = uuid.uuid4().hex
         taken.add(obj.boucle.uuid)
 
@@ -88,7 +91,7 @@ def reattach(obj: bpy.types.Object) -> bool:
     if not obj.boucle.uuid:
         return False
     files = own_files(obj)
-    remembered = report.read(files.report).get("bake")
+    remembered = bake_record.of_report(report.read(files.report))
     if trouble(obj, files) or not remembered:
         return False
     try:
@@ -142,7 +145,7 @@ def _bake_of(path: str) -> dict[str, Any] | None:
 @lru_cache(maxsize=256)
 def _read_bake(path: str, _written: int, _size: int, _file: int) -> dict[str, Any] | None:
     """A report is long, and is read once as long as its file stays the same."""
-    return report.read(path).get("bake")
+    return bake_record.of_report(report.read(path)) or None
 
 
 def free(obj: bpy.types.Object) -> None:
@@ -169,7 +172,7 @@ def restore_previous(obj: bpy.types.Object) -> None:
             _swap(path, kept)
     except OSError as error:
         raise cannot_write(files.pc2, error) from error
-    remembered = report.read(files.report).get("bake")
+    remembered = bake_record.of_report(report.read(files.report))
     if not remembered:
         raise Refusal(f'"{files.report}" is missing or damaged: bake again')
     attach(obj, files.pc2, remembered)
@@ -177,7 +180,7 @@ def restore_previous(obj: bpy.types.Object) -> None:
 
 def has_previous(obj: bpy.types.Object) -> bool:
     """Whether an earlier bake is kept."""
-    if not obj.boucle.uuid:
+    if not cache_paths.is_identity(obj.boucle.uuid):
         return False
     path = os.path.join(own_folder(), f"{obj.boucle.uuid}.pc2")
     return os.path.isfile(cache_paths.files_of(path).previous.pc2)
@@ -185,11 +188,7 @@ def has_previous(obj: bpy.types.Object) -> bool:
 
 def record_of(obj: bpy.types.Object) -> dict[str, Any]:
     """What the bake that the object plays remembers; empty without one."""
-    try:
-        content = json.loads(obj.boucle.bake_record or "{}")
-    except ValueError:
-        return {}
-    return content if isinstance(content, dict) else {}
+    return bake_record.of_text(obj.boucle.bake_record)
 
 
 def problem(obj: bpy.types.Object) -> str:

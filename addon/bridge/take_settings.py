@@ -16,6 +16,16 @@ _NOT_KEPT = frozenset({
     *(f"use_{one.key}" for one in quantity.ALL),
 })  # fmt: skip
 """Settings that are not of the simulation."""
+_DAMAGES = (
+    AttributeError,
+    IndexError,
+    KeyError,
+    OverflowError,
+    RecursionError,
+    TypeError,
+    ValueError,
+)
+"""What Python and Blender say of values of the wrong kind."""
 
 
 def keep(settings: bpy.types.PropertyGroup) -> str:
@@ -27,15 +37,17 @@ def give(settings: bpy.types.PropertyGroup, kept: str, take: str) -> list[str]:
     """Give a cloth the settings of a take; those that this version does not have are left. The collections that are gone.
 
     Raises:
-        Refusal: The text is not what `keep` wrote.
+        Refusal: The text is not what `keep` wrote; nothing is changed then.
     """
+    before = _plain(settings)
     try:
         values = json.loads(kept or "{}")
         if not isinstance(values, dict):
-            raise ValueError(kept[:20])
-    except ValueError as error:
+            raise TypeError("accepted: a table")
+        return _set(settings, values)
+    except _DAMAGES as error:
+        _set(settings, before)
         raise Refusal(f'the settings of the take "{take}" are damaged: {error}') from error
-    return _set(settings, values)
 
 
 def _plain(settings: bpy.types.PropertyGroup) -> dict[str, Any]:

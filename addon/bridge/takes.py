@@ -11,7 +11,7 @@ import time
 
 import bpy
 
-from ..core import cache_paths, report, store, takes
+from ..core import bake_record, cache_paths, report, store, takes
 from ..core.cache_paths import CacheFiles
 from ..core.refusal import Refusal, cannot_write
 from . import cache, live, registry, runtime, take_settings
@@ -64,24 +64,23 @@ def restore(obj: bpy.types.Object, number: int, with_settings: bool) -> str:
     trouble = cache.trouble(obj, files)
     if trouble:
         raise Refusal(f'"{obj.name}", take "{take.name}": {trouble}')
-    record = report.read(files.report).get("bake")
+    record = bake_record.of_report(report.read(files.report))
     if not record:
         raise Refusal(f'"{files.report}" is missing or damaged: bake again')
+    before = take_settings.keep(obj.boucle)
+    gone = take_settings.give(obj.boucle, take.settings, take.name) if with_settings else []
     live.drop(obj)
     own = cache.own_files(obj)
     try:
-        store.set_aside(own)
-    except OSError as error:
-        raise cannot_write(own.pc2, error) from error
-    _copy(files, own)
-    said = f'"{obj.name}" plays "{take.name}"'
-    if with_settings:
-        gone = take_settings.give(obj.boucle, take.settings, take.name)
-        said += " with its settings"
-        if gone:
-            names = ", ".join(f'"{name}"' for name in gone)
-            said += f", but for collections that are gone: {names}"
+        _put(files, own)
+    except Refusal:
+        take_settings.give(obj.boucle, before, take.name)
+        raise
     cache.attach(obj, own.pc2, record)
+    said = f'"{obj.name}" plays "{take.name}"' + (" with its settings" if with_settings else "")
+    if gone:
+        names = ", ".join(f'"{name}"' for name in gone)
+        said += f", but for collections that are gone: {names}"
     return said
 
 
@@ -105,7 +104,9 @@ def remove(obj: bpy.types.Object, number: int) -> None:
         for one in other.boucle.takes
         if is_same_file(files_of(other, one).pc2, files.pc2)
     ]
-    if len(users) == 1:
+    if len(users) == 1 and not cache_paths.is_ours(files.pc2):
+        runtime.warn(f'"{obj.name}": "{files.pc2}" lies in no cache folder and is not removed')
+    elif len(users) == 1:
         for path in files.existing():
             try:
                 os.remove(path)
@@ -205,6 +206,15 @@ def forget() -> None:
     """Another file is loaded."""
     _comparisons.clear()
     _places.clear()
+
+
+def _put(files: CacheFiles, own: CacheFiles) -> None:
+    """Copy a take's files to a cloth's own place; the bake that was there becomes the one before."""
+    try:
+        store.set_aside(own)
+    except OSError as error:
+        raise cannot_write(own.pc2, error) from error
+    _copy(files, own)
 
 
 def _copy(source: CacheFiles, target: CacheFiles) -> None:

@@ -92,6 +92,16 @@ def is_live(path: str) -> bool:
     return LIVE_FOLDER in re.split(r"[\\/]", path)
 
 
+def is_identity(text: str) -> bool:
+    """Whether a text is what we call a cloth by, and so a file."""
+    return re.fullmatch("[0-9a-f]{32}", text) is not None
+
+
+def is_ours(path: str) -> bool:
+    """Whether a file lies in a folder for caches, of whatever blend file."""
+    return CACHE_FOLDER in re.split(r"[\\/]", os.path.normpath(path))[:-1]
+
+
 def is_within(path: str, folder: str) -> bool:
     """Whether a file lies directly in a folder."""
     return os.path.normcase(os.path.normpath(os.path.dirname(path))) == os.path.normcase(

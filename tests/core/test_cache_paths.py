@@ -33,3 +33,18 @@ def test_a_live_file_is_known_by_its_folder_on_every_system():
     assert cache_paths.is_live("C:\\Temp\\blender_x\\boucle\\boucle_live\\7.pc2")
     assert not cache_paths.is_live("//boucle_cache/my_boucle_live_shot/7.pc2")
     assert not cache_paths.is_live("")
+
+
+def test_what_names_or_holds_files_of_ours_is_known():
+    assert cache_paths.is_identity("0123456789abcdef0123456789abcdef")
+    for text in (
+        "",
+        "../" * 11 + "etc",
+        "0123456789ABCDEF0123456789ABCDEF",
+        "0" * 31,
+        "0" * 32 + "\n",
+    ):
+        assert not cache_paths.is_identity(text)
+    assert cache_paths.is_ours("/shots/boucle_cache/s01/a.take-1.pc2")
+    for path in ("/shots/a.pc2", "/shots/boucle_cache", "/shots/boucle_cache/../a.pc2"):
+        assert not cache_paths.is_ours(path)

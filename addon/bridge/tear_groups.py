@@ -3,7 +3,7 @@
 What splits stores at each point from which vertex it comes. What mends joins points of one vertex that lie in one place, bit
 for bit, and no others: seams that close and sheets that touch stay apart. For that it moves every such point to a place that
 its vertex and its position alone decide, at random in a cube of 1 m, where a search for near points finds those that are
-alike: of a million points two others come that near in one of ten million frames.
+alike. Of a million points two others come as near in fewer than one of ten million frames.
 """
 
 from __future__ import annotations

@@ -65,15 +65,19 @@ def attach(obj: bpy.types.Object, pc2_path: str, remembered: dict[str, Any]) -> 
     Raises:
         Refusal: It is of a torn cloth, and damaged, or the mesh cannot bear the mark of its tears.
     """
+    _play(obj, pc2_path, remembered)
+    path = played_path(obj)
+    others = (other for other in registry.local_cloths() if other != obj)
+    follow_files([other for other in others if played_path(other) == path])
+
+
+def _play(obj: bpy.types.Object, pc2_path: str, remembered: dict[str, Any]) -> None:
     slot.ensure(obj)
     tearing.show(obj, torn.read(cache_paths.files_of(pc2_path).tear))
     path = cache_paths.relative_to_blend(pc2_path, bpy.data.filepath)
     slot.play(slot.find(obj).cache, path, int(remembered["first"]))
     obj.boucle.bake_record = json.dumps(remembered)
     obj.update_tag()
-    path = played_path(obj)
-    others = (other for other in registry.local_cloths() if other != obj)
-    follow_files([other for other in others if played_path(other) == path])
 
 
 def detach(obj: bpy.types.Object) -> None:
@@ -95,7 +99,7 @@ def reattach(obj: bpy.types.Object) -> bool:
     if trouble(obj, files) or not remembered:
         return False
     try:
-        attach(obj, files.pc2, remembered)
+        _play(obj, files.pc2, remembered)
     except Refusal as refusal:
         _tell(obj, refusal)
         return False

@@ -3,7 +3,7 @@
 What splits stores at each point from which vertex it comes. What mends joins points of one vertex that lie in one place, bit
 for bit, and no others: seams that close and sheets that touch stay apart. For that it moves every such point to a place that
 its vertex and its position alone decide, at random in a cube of 1 m, where a search for near points finds those that are
-alike: of a million points two others come that near in one of ten million frames.
+alike. Of a million points two others come as near in fewer than one of ten million frames.
 """
 
 from __future__ import annotations
@@ -54,12 +54,12 @@ def remove_unused() -> None:
 
 
 def _digest(group: bpy.types.NodeTree) -> str:
-    """By kinds of nodes, what they are linked to and the attributes that they name: sockets change with Blender's versions."""
+    """By kinds of nodes, links, names of attributes and distances: other sockets change with Blender's versions."""
     words = [node.bl_idname + (" off" if node.mute else "") for node in group.nodes]
     for link in group.links:
         words.append(f"{link.from_node.bl_idname} > {link.to_node.bl_idname}")
-    named = (node.inputs.get("Name") for node in group.nodes)
-    words += [str(socket.default_value) for socket in named if socket is not None]
+    told = (node.inputs.get(name) for node in group.nodes for name in ("Name", "Distance"))
+    words += [str(socket.default_value) for socket in told if socket is not None]
     return drift.digest("\n".join(sorted(words)).encode())
 
 

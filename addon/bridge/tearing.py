@@ -46,7 +46,7 @@ def layout(mesh: bpy.types.Mesh, torn: Sequence[tuple[int, int]] | None) -> Layo
         placed = array("i", bytes(4 * count))
         for number, point in zip(numbers, at, strict=True):
             placed[number] = point
-        shape = tear_fit.digest(mesh)
+        shape = tear_fit.digest(copy)  # the mesh itself may be in edit mode
         return Layout(len(mesh.vertices), len(split.vertices), placed, edges, shape)
     finally:
         bpy.data.scenes.remove(scene)

@@ -5,6 +5,8 @@ import os
 
 def others(settings, prefix=""):
     """Each property that can be set, with a value that it has not: (path, owner, property, value)."""
+    import uuid
+
     import bpy
 
     for prop in settings.bl_rna.properties:
@@ -17,7 +19,8 @@ def others(settings, prefix=""):
         elif prop.type == "POINTER" or prop.type == "COLLECTION":
             continue  # those to data are set by hand
         elif prop.type == "STRING":
-            yield prefix + name, settings, prop, value + "x"
+            # An identity that is not one of ours is given anew when the file opens.
+            yield prefix + name, settings, prop, uuid.uuid4().hex if name == "uuid" else value + "x"
         elif prop.type == "BOOLEAN":
             yield prefix + name, settings, prop, not value
         elif prop.type == "ENUM":

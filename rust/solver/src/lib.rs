@@ -63,6 +63,7 @@
 //! [contact/recovery.rs]: contact/recovery/index.html
 //! [contact/settling.rs]: contact/settling/index.html
 //! [tear/mod.rs]: tear/index.html
+//! [tear/carried.rs]: tear/carried/index.html
 //! [tear/fan.rs]: tear/fan/index.html
 //! [integrator/forward_euler.rs]: integrator/forward_euler/index.html
 //! [integrator/symplectic_euler.rs]: integrator/symplectic_euler/index.html
